@@ -16,6 +16,7 @@ from loopbook.deadtime import Loop, System
 from loopbook.pid import PID
 from loopbook.stability import (
     StabilityLimitError,
+    UndecidedError,
     boundary_pi,
     boundary_pi_approximate,
     boundary_pid,
@@ -106,6 +107,37 @@ def test_the_limit_itself_is_neither():
         with pytest.raises(StabilityLimitError, match="imaginary axis"):
             unstable_closed_loop_poles(limit)
         assert not is_closed_loop_stable(limit)
+
+
+@pytest.mark.parametrize("digits", [15, 20, 60])
+def test_a_resonance_however_little_damped_is_stable_and_proved(digits):
+    for damping, count in ((sympy.Rational(1, 10**digits), 0), (-sympy.Rational(1, 10**digits), 2)):
+        resonance = s**2 + damping * s + 1
+        assert unstable_poles(1 / resonance) == count
+        assert unstable_poles(1 / sympy.expand(resonance * (s + 2 * DELAY))) == count + 2
+
+
+def test_what_is_not_told_is_no_answer():
+    for share, stable in ((-1, True), (1, False)):
+        gain = sympy.Rational(str(sympy.N(sympy.pi / 2, 40))) * (1 + share * sympy.Rational(1, 10**20))
+        assert Loop(DELAY / s, gain).is_stable is stable
+    for question in (is_closed_loop_stable, unstable_closed_loop_poles):
+        with pytest.raises(UndecidedError, match=r"between the frequencies 1\.5707"):
+            question(sympy.pi / 2 * DELAY / s)
+    # on the limit but for the thirtieth digit of a root
+    with pytest.raises(UndecidedError):
+        unstable_closed_loop_poles((2 + sympy.sqrt(2)) / (s * (s + 1) * (s + sympy.sqrt(2))))
+    for share in (-1, 1):
+        row = 1 + share * sympy.Rational(1, 10**18)
+        with pytest.raises(UndecidedError, match="inf"):
+            roots_of(s + 1 + s * row * DELAY)
+
+
+def test_roots_on_the_axis_that_all_parts_have_in_common_are_proved():
+    for D in ((s**2 + 1) * (s + DELAY), s**4 + 2 * s**2 + 1, (s**2 + 3) * (s**2 - 1)):
+        with pytest.raises(StabilityLimitError):
+            roots_of(sympy.expand(D))
+    assert roots_of(sympy.expand((s**2 - 1) * (s**2 + s / 10**30 + 1))) == 1
 
 
 def test_a_loop_that_returns_to_stability_with_more_delay():

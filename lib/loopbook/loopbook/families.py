@@ -93,7 +93,10 @@ class Family:
 
     @functools.cached_property
     def is_stable(self) -> np.ndarray:
-        """Whether each closed loop is stable; a pole that controller and process cancel is not seen."""
+        """Whether each closed loop is stable; a pole that controller and process cancel is not seen.
+
+        False stands also for a loop so close to the limit that sixteen digits do not decide; `Loop.is_stable` does.
+        """
         return (count_closed(*self._open) == 0).reshape(self.shape)
 
     def Ms(self) -> np.ndarray:

@@ -14,6 +14,7 @@ import sympy
 from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.deadtime.response import Response
+from loopbook.deadtime.schwarz import schwarz_form
 from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_response, step_info
 from loopbook.deadtime.superposition import response_to_samples
 from loopbook.laplace import transform
@@ -310,7 +311,7 @@ class System(DelayFraction):
     # ---- other forms
 
     def state_space(self) -> ChannelModel:
-        """Return a state-space model with delay channels, the controllable canonical form with balanced states.
+        """Return a state-space model with delay channels, in Schwarz's form, as `schwarz_form` says.
 
         Each dead time of the denominator is a channel that leads back to the states, and each one of the numerator a
         channel that leads to the output.
@@ -324,34 +325,24 @@ class System(DelayFraction):
     def _state_space(self) -> ChannelModel:
         from scipy.linalg import matrix_balance
 
-        n, leading = self.order, self.denominator[Fraction(0)][-1]
-
-        def rows(parts):  # lowest power first
-            return np.array([[c / leading for c in part] + [0.0] * (n + 1 - len(part)) for part in parts]).reshape(
-                -1, n + 1
-            )
-
-        below = {delay: part for delay, part in self.denominator.items() if delay}
-        above = {delay: part for delay, part in self.numerator.items() if delay}
-        direct = rows([self.numerator.get(Fraction(0), ())])
-        own, back, ahead = rows([self.denominator[Fraction(0)]])[0, :n], rows(below.values()), rows(above.values())
-        channels = np.vstack([back, ahead])
-        # the last derivative is u - own x - (what comes back), and what it is multiplied with follows from that
-        A = np.diag(np.ones(max(n - 1, 0)), 1)[:n, :n]
-        B1, B2 = np.zeros((n, 1)), np.zeros((n, len(channels)))
-        returns = np.r_[-np.ones(len(back)), np.zeros(len(ahead))]
-        if n:
-            A[-1], B1[-1], B2[-1] = -own, 1, returns
-        C1, C2 = (c[:, :n] - c[:, n:] * own for c in (direct, channels))
-        D11, D21 = direct[:, n:], channels[:, n:]
-        to_output = np.r_[np.zeros(len(back)), np.ones(len(ahead))]
-        D12, D22 = D11 * returns + to_output, D21 * returns
-        if n:
+        back = {delay: part for delay, part in self.denominator.items() if delay}
+        ahead = {delay: part for delay, part in self.numerator.items() if delay}
+        parts = [self.numerator.get(Fraction(0), ()), *back.values(), *ahead.values()]
+        A, C, D = schwarz_form(self.denominator[Fraction(0)], parts)
+        if len(A):
             with np.errstate(invalid="ignore"):  # SciPy makes integers of scales
-                _, (scale, _) = matrix_balance(A, permute=False, separate=True)
-            A, B1, B2 = A * scale / scale[:, None], B1 / scale[:, None], B2 / scale[:, None]
-            C1, C2 = C1 * scale, C2 * scale
-        return ChannelModel(A, B1, B2, C1, C2, D11, D12, D21, D22, [*below, *above])
+                closed = A.copy()
+                closed[-1] += abs(C[1 : 1 + len(back)]).sum(axis=0)
+                _, (scale, _) = matrix_balance(closed, permute=False, separate=True)
+            A, C = A * scale / scale[:, None], C * scale
+        # into the states and what is direct goes u - what comes back
+        enters = np.r_[1.0, -np.ones(len(back)), np.zeros(len(ahead))]
+        B, D = np.zeros((len(A), len(parts))), np.outer(D, enters)
+        B[-1:] = enters / (scale[-1] if len(A) else 1)
+        D[0, 1 + len(back) :] = 1.0
+        return ChannelModel(
+            A, B[:, :1], B[:, 1:], C[:1], C[1:], D[:1, :1], D[:1, 1:], D[1:, :1], D[1:, 1:], [*back, *ahead]
+        )
 
     def to_control(
         self, order: int | None = None, omega: ArrayLike | None = None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from loopbook.ise.loops import integral_of_square
 from loopbook.ise.residues import sums_of_residues
 from loopbook.quasipolynomials.symbols import fraction_of
 from loopbook.stability.counting import ON_LIMIT, count_roots
+from loopbook.stability.enclosures import UndecidedError
 
 if TYPE_CHECKING:
     from loopbook.quasipolynomials.arrays import Quasipolynomials
@@ -27,7 +27,8 @@ def ise_family(above: Quasipolynomials, below: Quasipolynomials) -> np.ndarray:
     digits that it loses. Points that fail it, or have several dead times, are left to `integral_of_square`.
 
     Returns:
-        An array with a value for each point; ``math.inf`` where E has poles in the right half-plane or on the axis.
+        An array with a value for each point; ``math.inf`` where E has poles in the right half-plane or on the axis, nan
+        where that is not decided.
     Raises:
         ValueError: as `integral_of_square`.
     """
@@ -40,7 +41,10 @@ def ise_family(above: Quasipolynomials, below: Quasipolynomials) -> np.ndarray:
     left = (counts == ON_LIMIT) | (parts[2][0, -1] == 0)
     values = np.where(left, math.nan, np.where(counts > 0, math.inf, sums_of_residues(*parts)))
     for point in np.flatnonzero(np.isnan(values)):
-        with contextlib.suppress(UnstableLoopError):  # infinite, then
-            values[point] = math.inf
+        try:
             values[point] = integral_of_square(fraction_of(above, below, point))
+        except UnstableLoopError:
+            values[point] = math.inf
+        except UndecidedError:
+            values[point] = math.nan
     return values

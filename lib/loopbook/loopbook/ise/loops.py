@@ -58,6 +58,7 @@ def integral_of_square(E: object, method: str | None = None) -> float:
         A float.
     Raises:
         UnstableLoopError: for poles of E in the right half-plane or on the imaginary axis.
+        UndecidedError: for poles of E so close to the axis that it is not told on which side they are.
         ValueError: if e(t) does not vanish, contains an impulse, or the method cannot be applied to it.
 
     >>> import sympy

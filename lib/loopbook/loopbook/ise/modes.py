@@ -12,7 +12,7 @@ from loopbook.ise.error import ErrorFraction
 from loopbook.stability.poles import roots_right_of
 
 DIGITS = 40
-MOST_MODES = 80
+MOST_MODES, FEW_MODES = 80, 20  # more than a few are sought only where it would last long to wait until they are few
 MOST_SAMPLES = 15_000_000  # of a sum of several modes, before one of them is left
 CHUNK = 8192
 STEP = 0.4  # between samples, as a share of the fastest mode's time
@@ -187,14 +187,14 @@ def _zeros(function, a, b, at_a, at_b):
 # ---- finding them
 
 
-def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
+def slow_modes(fraction: ErrorFraction, rate: float, most: int = MOST_MODES) -> Modes | None:
     """The modes of all poles of an error with real parts above -rate, as many as the argument principle counts.
 
     The time is counted from when the error begins.
 
     None if there are too many, or they are not found, as `roots_right_of` says.
     """
-    poles = roots_right_of(fraction.sums(rate)[1], -1.0, MOST_MODES, fraction.removable)
+    poles = roots_right_of(fraction.sums(rate)[1], -1.0, most, fraction.removable)
     exact = [None] if poles is None else [_exact(fraction, p * rate) for p in poles]
     if any(e is None for e in exact):
         return None

@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 from loopbook.deadtime import System
 from loopbook.deadtime.step_info import zeros_of
 from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
-from loopbook.ise.modes import ManyModesError, slow_modes
+from loopbook.ise.modes import FEW_MODES, MOST_MODES, ManyModesError, slow_modes
 from loopbook.quasipolynomials import read
 from plainmath.expressions import s
 from plainmath.validation import number
@@ -145,9 +145,9 @@ def _beyond(
     """The integrals from the end of a response on, or None and the reason why they are not known."""
     end = float(response.edges[-1])
     rate = GONE / end
-    modes = slow_modes(fraction, rate)
+    modes = slow_modes(fraction, rate, MOST_MODES if len(response.edges) > EARLY else FEW_MODES)
     if modes is None:
-        return None, "the modes that last longer were not found"
+        return None, "the modes that last longer are many, or were not found"
     modes = modes.later(-float(fraction.earliest))
     late = response.edges[:-1] >= 0.9 * response.edges[-1]
     late[-1] = True

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 __all__ = [
-    "DelayFraction", "Quasipolynomial", "expression", "lowest_term", "plus", "read", "taylor_coefficient", "times",
+    "DelayFraction", "Quasipolynomial", "common_polynomial", "expression", "lowest_term", "plus", "read",
+    "taylor_coefficient", "times",
 ]  # fmt: skip
 
 #: A sum of polynomials in `s`, each with a dead time: {delay: whole coefficients, the lowest power first}.
@@ -133,16 +134,29 @@ def _without_common_polynomial(
     parts = [[*reversed(part)] for part in (*above.values(), *below.values())]
     if min(map(len, parts)) == 1 or _surely_coprime(parts):
         return above, below
-    common = functools.reduce(lambda f, g: dup_gcd(f, g, sympy.ZZ), [list(map(sympy.ZZ, part)) for part in parts])
-    if len(common) == 1:
-        return above, below
-    return tuple(
-        {
-            delay: tuple(int(c) for c in reversed(dup_exquo(list(map(sympy.ZZ, reversed(part))), common, sympy.ZZ)))
-            for delay, part in side.items()
-        }
-        for side in (above, below)
-    )
+    common = _gcd(parts)
+    return (above, below) if len(common) == 1 else (_divided(above, common), _divided(below, common))
+
+
+def common_polynomial(parts: Quasipolynomial) -> tuple[tuple[int, ...], Quasipolynomial]:
+    """Return the polynomial that all parts of a quasipolynomial have in common, the lowest power first, and the rest.
+
+    >>> common_polynomial({Fraction(0): (0, 2, 2), Fraction(1): (1, 1)})    # 2 s (s + 1) + (s + 1) exp(-s)
+    ((1, 1), {Fraction(0, 1): (0, 2), Fraction(1, 1): (1,)})
+    """
+    common = _gcd([[*reversed(part)] for part in parts.values()])
+    return tuple(map(int, reversed(common))), _divided(parts, common)
+
+
+def _gcd(parts):
+    return functools.reduce(lambda f, g: dup_gcd(f, g, sympy.ZZ), [list(map(sympy.ZZ, part)) for part in parts])
+
+
+def _divided(parts: Quasipolynomial, common: list) -> Quasipolynomial:
+    return {
+        delay: tuple(int(c) for c in reversed(dup_exquo(list(map(sympy.ZZ, reversed(part))), common, sympy.ZZ)))
+        for delay, part in parts.items()
+    }
 
 
 def _surely_coprime(parts: list[list[int]]) -> bool:

@@ -16,6 +16,7 @@ from loopbook.stability.counting import (
     unstable_poles,
     unstable_roots,
 )
+from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.limits import boundary_pi, boundary_pi_approximate, boundary_pid, ultimate
 from loopbook.stability.maps import stability_map
 from loopbook.stability.margins import Margins, delay_margin, margins
@@ -24,8 +25,8 @@ from loopbook.stability.robustness import DelayRatios, robustness, robustness_pi
 from loopbook.stability.window import robust_in_window, shinskey_window
 
 __all__ = [
-    "DelayRatios", "Margins", "StabilityLimitError", "boundary_pi", "boundary_pi_approximate", "boundary_pid",
-    "delay_margin", "dominant_poles", "is_closed_loop_stable", "is_stable", "margins", "robust_in_window", "robustness",
-    "robustness_pi_first_order", "shinskey_window", "stability_map", "ultimate", "unstable_closed_loop_poles",
-    "unstable_poles", "unstable_roots",
+    "DelayRatios", "Margins", "StabilityLimitError", "UndecidedError", "boundary_pi", "boundary_pi_approximate",
+    "boundary_pid", "delay_margin", "dominant_poles", "is_closed_loop_stable", "is_stable", "margins",
+    "robust_in_window", "robustness", "robustness_pi_first_order", "shinskey_window", "stability_map", "ultimate",
+    "unstable_closed_loop_poles", "unstable_poles", "unstable_roots",
 ]  # fmt: skip

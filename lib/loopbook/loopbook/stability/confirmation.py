@@ -11,7 +11,7 @@ import numpy as np
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, count_closed, count_roots
-from loopbook.stability.enclosures import Exact
+from loopbook.stability.enclosures import Exact, UndecidedError
 
 if TYPE_CHECKING:
     from loopbook.stability.loops import Loops
@@ -128,7 +128,7 @@ def _counts(loops, changes, near, most):
 
 
 def _exactly(loops, factor, delay):
-    """The number of unstable poles with more digits."""
+    """The number of unstable poles with more digits; on the limit where they do not decide."""
     A, B = loops.exact[:2]
     factor, delay = Fraction(factor), Fraction(delay)
     above = {d + delay: tuple(factor.numerator * c for c in part) for d, part in A.parts.items()}
@@ -138,7 +138,10 @@ def _exactly(loops, factor, delay):
     if max(map(len, parts.values())) - 1 > order:
         return ENDLESS
     sums = Quasipolynomials.exact(parts, order, divisor)
-    return int(count_roots(sums, Exact(parts, order, divisor, 1.0), int(loops.at_zero[4][0]))[0])
+    try:
+        return int(count_roots(sums, Exact(parts, order, divisor, 1.0), int(loops.at_zero[4][0]))[0])
+    except UndecidedError:
+        return ON_LIMIT
 
 
 def confirm_gains(loops: Loops, gains: np.ndarray, frequencies: np.ndarray) -> None:

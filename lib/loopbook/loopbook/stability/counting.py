@@ -11,9 +11,18 @@ import sympy
 
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
-from loopbook.quasipolynomials.fraction import Quasipolynomial, expression, lowest_term, plus, times
+from loopbook.quasipolynomials.fraction import (
+    Quasipolynomial,
+    common_polynomial,
+    expression,
+    lowest_term,
+    plus,
+    taylor_coefficient,
+    times,
+)
 from loopbook.stability.difference import Endless, at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import (
+    EPSILON,
     NARROWEST,
     Exact,
     UndecidedError,
@@ -23,6 +32,7 @@ from loopbook.stability.enclosures import (
     origin,
     walk,
 )
+from loopbook.stability.polynomials import unstable_roots_of
 from loopbook.transfer import transfer_function
 from plainmath.expressions import s
 
@@ -32,18 +42,20 @@ if TYPE_CHECKING:
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
 MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each quasipolynomial
 FEW_TERMS = 1  # the degree of expansions for many quasipolynomials
+NARROWER = Fraction(1, 2**80)  # of an interval, as a share; what is no fraction is known to 30 digits
+DIGITS = 25  # from which a coefficient may be no fraction
 RATIO = 2.0  # of the frequencies at the ends of an interval, at first
 
 
 class StabilityLimitError(ValueError):
-    """There are poles on the imaginary axis: what has them is neither stable nor unstable."""
+    """There are poles on the imaginary axis, proved: what has them is neither stable nor unstable."""
 
 
 # ---- what is asked
 
 
 def is_stable(x: object) -> bool:
-    """Say whether a system or a loop is stable; one on the limit is not.
+    """Say whether a system or a loop is stable, proved; one with poles on the imaginary axis, proved as well, is not.
 
     Of a `Loop` it is internal stability that is meant: a pole that controller and process cancel counts, too. To close
     the loop around L(s), ask `is_closed_loop_stable`.
@@ -51,7 +63,7 @@ def is_stable(x: object) -> bool:
     Arguments:
         x: a transfer function with numbers, an expression or a `System`; or a `Loop`.
     Raises:
-        ValueError: as `unstable_poles`, but not for poles on the imaginary axis.
+        UndecidedError, ValueError: as `unstable_poles`, but not for poles on the imaginary axis.
 
     >>> is_stable(1 / (s + sympy.exp(-s))), is_stable(1 / (s + 2 * sympy.exp(-s)))
     (True, False)
@@ -73,6 +85,7 @@ def unstable_poles(x: object) -> float:
     Raises:
         StabilityLimitError: for poles on the imaginary axis. One at zero that a zero of the numerator removes, as in
             (1 - exp(-s))/s, is none.
+        UndecidedError: for poles beside the axis of which 24 digits do not tell on which side they are.
         ValueError: for symbols, a loop that is improper or has no solution, or as `unstable_roots`.
 
     >>> unstable_poles(1 / (s - 1)), unstable_poles(1 / (s + 2 * sympy.exp(-s)))
@@ -95,9 +108,9 @@ def unstable_poles(x: object) -> float:
 
 
 def is_closed_loop_stable(loop: object) -> bool:
-    """Say whether the closed loop of L(s), with negative feedback, is stable; one on the limit is not.
+    """Say whether the closed loop of L(s), with negative feedback, is stable; one on the limit, proved, is not.
 
-    Raises ValueError as `unstable_closed_loop_poles` does, but not for a loop on the limit.
+    Raises UndecidedError and ValueError as `unstable_closed_loop_poles` does, but not for a loop on the limit.
 
     >>> is_closed_loop_stable(sympy.exp(-s) / s), is_closed_loop_stable(2 * sympy.exp(-s) / s)
     (True, False)
@@ -120,7 +133,8 @@ def unstable_closed_loop_poles(loop: object) -> float:
     Returns:
         An integer; ``math.inf`` where the loop's gain at high frequencies returns with a dead time and is above 1.
     Raises:
-        StabilityLimitError: for closed-loop poles on the imaginary axis.
+        StabilityLimitError, UndecidedError: for closed-loop poles on the imaginary axis or beside it, as
+            `unstable_poles`.
         ValueError: for symbols, an improper loop, an algebraic loop without solution, or as `unstable_roots`.
 
     >>> unstable_closed_loop_poles(sympy.exp(-s) / s), unstable_closed_loop_poles(2 * sympy.exp(-s) / s)
@@ -137,8 +151,11 @@ def unstable_roots(denominator: Mapping, removable: int = 0) -> float:
 
     The argument principle counts them, by the phase of the sum along the imaginary axis. On an interval of frequency
     the phase is believed only where an expansion with a bound of its rest proves that the sum has no zero there;
-    otherwise the interval is divided, and computed with more digits where rounding is the reason. Beyond a certain
-    frequency the highest power prevails, also by a bound. No more than 400,000 intervals are looked at.
+    otherwise the interval is divided, and computed with more digits where rounding is the reason, up to 24. Beyond a
+    certain frequency the highest power prevails, also by a bound. No more than 400,000 intervals are looked at. What is
+    still not told is decided without digits for a polynomial, and for one that all parts have in common, if the
+    coefficients are fractions of fewer than 25 digits. (Without such a factor there can be roots on the axis other than zero only where the highest power returns with a dead time of
+    which the others are multiples, or where several dead times are no multiples of one.)
 
     Arguments:
         denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is.
@@ -147,8 +164,8 @@ def unstable_roots(denominator: Mapping, removable: int = 0) -> float:
         An integer; ``math.inf`` where the highest power returns with dead times so strongly that there is no end of
         roots.
     Raises:
-        StabilityLimitError: for roots on the imaginary axis, or so close to it that their frequencies cannot be told
-            from it.
+        StabilityLimitError: for roots on the imaginary axis, or an infinite row that approaches it.
+        UndecidedError: for roots that are closer to the axis than can be told; it says at which frequencies.
         ValueError: for a sum that is zero, or one whose highest powers leave open whether it has an end of
             roots: where they have several dead times that are not multiples of one, and the sizes of their coefficients
             add up to that of the undelayed one or more.
@@ -255,8 +272,23 @@ def _count_of(parts: Quasipolynomial, removable: int, name: Callable[[], object]
         return math.inf
     divisor = parts[Fraction(0)][-1]
     sums = Quasipolynomials.exact(parts, order, divisor)
-    count = int(count_roots(sums, Exact(parts, order, divisor, 1.0), removable)[0])
-    if count == ON_LIMIT:
+    try:
+        count = int(count_roots(sums, Exact(parts, order, divisor, 1.0), removable)[0])
+        if count == ON_LIMIT and (removable or taylor_coefficient(parts, 0)):
+            # by floating point the highest powers are on the limit
+            returning = abs(sum(part[order] for delay, part in parts.items() if delay and len(part) > order))
+            if returning != abs(divisor):
+                raise UndecidedError("the number of unstable poles", 0.0, math.inf)
+    except UndecidedError as reason:
+        common, rest = common_polynomial(parts)
+        zeros = min(removable, next(k for k, c in enumerate(common) if c))
+        count = unstable_roots_of(common[zeros:])
+        rounded = any(len(str(abs(c)).rstrip("0")) >= DIGITS for c in common)
+        if len(common) == 1 or (rounded and count is not None):
+            raise UndecidedError(f"{reason.what} of {name()}", reason.low, reason.high) from None
+        if count is not None:
+            return count + _count_of(rest, removable - zeros, name)
+    if count is None or count == ON_LIMIT:
         raise StabilityLimitError(f"{name()} has poles on the imaginary axis, or an infinite row that approaches it")
     return math.inf if count == ENDLESS else count
 
@@ -326,10 +358,11 @@ def count_roots(
 ) -> np.ndarray:
     """The number of roots in the right half-plane of many quasipolynomials.
 
-    It is ON_LIMIT with some on the axis, and ENDLESS without end.
+    It is ON_LIMIT with some on the axis, or so close to it that it is not told, and ENDLESS without end.
 
     Arguments:
-        exact: the same as `sums`, if it is a single one and more digits are at hand.
+        exact: the same as `sums`, if it is a single one and more digits are at hand. Then ON_LIMIT is a root at zero or
+            an infinite row, and what is not told an UndecidedError.
         removable: how many roots at zero do not count.
         near: a frequency for each sum about which there are roots close to the axis; nan without one. It costs time
             not to know it.
@@ -446,8 +479,32 @@ class Turns:
         if precise or self.exact is None:
             within = noisy & (around.spread < 64 * around.noise)
             lost = ~proven & ((b - a <= 2 * NARROWEST * b) | (b < 1e-200) | within)
-            self.limit[which[lost]] = True
+            if self.exact is None:
+                self.limit[which[lost]] = True
+            for k in np.flatnonzero(lost) if precise else ():
+                self.phase += self._nearer(float(a[k]), float(b[k]))
+                proven[k] = True
         return ~proven & ~self.limit[which], noisy, sums.longest[which]
+
+    def _nearer(self, low: float, high: float) -> float:
+        """The turn of a single quasipolynomial on an interval whose ends floating point hardly tells apart."""
+        powers = np.arange(DEGREE + 1)
+        sizes = self.sums.sizes(np.zeros(1, dtype=int), np.array([high]))[:, 0]
+        a, b = Fraction(low), Fraction(high)
+        intervals, total = [(a, b)], 0.0
+        while b - a > NARROWER * b:
+            a, b = intervals.pop()
+            c, r = (a + b) / 2, float(b - a) / 2
+            terms, *ends = (self.exact.taylor(np.array([w]))[:, 0] for w in (c, a, b))
+            around = abs(terms) * r**powers
+            noise = 8 * EPSILON * around.sum() + 2.0**-140 * sizes[0]
+            if 2 * around[0] - around.sum() - sizes[-1] * r ** (DEGREE + 1) > 4 * noise:
+                total += float(np.angle(ends[1][0] * ends[0][0].conj()))
+                if not intervals:
+                    return total
+            else:
+                intervals += [(a, c), (c, b)]
+        raise UndecidedError(self.name, low, high, float(self.unit[0]))
 
 
 def _lowest(sums):

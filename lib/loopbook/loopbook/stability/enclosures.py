@@ -370,8 +370,10 @@ def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None) -> t
     Coefficients that are zero but for rounding are zero; those of an exact sum are zero where they are.
     """
     degrees = np.arange(degree + 2)
-    factorials = np.array([math.factorial(n) for n in degrees], dtype=float)
-    late = sums.delays[:, None, :] ** degrees[:, None] / factorials[:, None]
+    # the powers over the factorials, which alone would overflow
+    late = np.repeat(sums.delays[:, None, :], degree + 2, axis=1) / np.maximum(degrees, 1)[:, None]
+    late[:, 0] = 1.0
+    late = late.cumprod(axis=1)
     bounds = np.zeros((degree + 2, sums.count))
     series = np.zeros_like(bounds, dtype=sums.coefficients.dtype)
     signs = (-1.0) ** degrees[:, None]

@@ -1,0 +1,100 @@
+"""A state space of any order of fractions with one denominator: Schwarz's form, from Routh's array.
+
+A companion form holds a polynomial by its coefficients, and those of (s + 1)^18 rounded to sixteen digits have roots up
+to 1.3, some of them in the right half-plane. Schwarz's matrix is skew but for one damping at the end, so that without
+input the sum of the squares of the states only falls; the states are orthogonal, so that an output is a sum in which
+nothing cancels, and rounding is lost as the motion decays.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["schwarz_form"]
+
+BITS = 64  # for each power of the denominator
+
+
+def schwarz_form(below: Sequence[int], above: Sequence[Sequence[int]]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return A, C and D: ``above/below`` is ``D + C (s - A)^-1 B``, where the input B is 1 for the last state alone.
+
+    Roots at zero are a chain of integrators behind the others, exact. Where the others are not all in the left
+    half-plane, the form is that of a function of s less a shift.
+
+    Arguments:
+        below: coefficients, the lowest power first.
+        above: of each numerator, not of a higher degree.
+    Returns:
+        A matrix, one with a row for each numerator, and an array with a number for each.
+    Source: H. R. Schwarz, Zeitschrift fuer angewandte Mathematik und Physik 7 (1956) 473.
+
+    >>> A, C, D = schwarz_form([2, 3, 1], [[2]])    # 2/(s**2 + 3*s + 2)
+    >>> (C @ np.linalg.solve(1j * np.eye(2) - A, [0, 1])).round(12)
+    array([0.2-0.6j])
+    """
+    from mpmath import mpf, sqrt, workprec
+
+    n = len(below) - 1
+    m = next(k for k, c in enumerate(below) if c)  # integrators
+    A, C, direct = np.zeros((n, n)), np.zeros((len(above), n)), np.zeros(len(above))
+    with workprec(BITS * (n + 4)):
+        D = [mpf(c) / below[-1] for c in below[m:]]
+        shift, speed, damping, couplings, basis = mpf(0), mpf(1), mpf(0), [], []
+        if n > m:
+            speed = 1 / max(abs(d / D[0]) ** (mpf(1) / i) for i, d in enumerate(D) if i)
+            while not (found := _routh(_moved(D, shift))):
+                shift = 2 * shift or speed / 4
+            damping, couplings, basis = found
+        # the equations are those of neighbours; the states' units make what leads there and back equal
+        there = [*[speed] * (m if n > m else m - 1), *map(sqrt, couplings)]
+        units = [mpf(1)] * n
+        for k in range(n - 2, -1, -1):
+            units[k] = units[k + 1] / there[k]
+            A[k, k + 1] = there[k]
+            A[k + 1, k] = -there[k] if k >= m else 0
+        for k in range(m, n):
+            A[k, k] = shift - (damping if k == n - 1 else 0)
+        for number, row in enumerate(above):
+            part = [mpf(c) / below[-1] for c in row] + [mpf(0)] * (n + 1 - len(row))
+            direct[number] = part[n]
+            rest = _moved([c - part[n] * d for c, d in zip(part[m:], D, strict=True)], shift)
+            for k in range(n - m - 1, -1, -1):
+                top = part[m + k] = rest[k]
+                for i, c in enumerate(basis[k]):
+                    rest[k - 2 * i] -= top * c
+            C[number] = [c * unit for c, unit in zip(part, units, strict=False)]
+    return A, C, direct
+
+
+def _moved(p, shift):
+    """The coefficients of p(s + shift), the lowest power first."""
+    p = list(p)
+    if shift:
+        for i in range(len(p)):
+            for k in range(len(p) - 2, i - 1, -1):
+                p[k] += shift * p[k + 1]
+    return p
+
+
+def _routh(p):
+    """Damping and couplings, and each state's polynomial, of every second power from its highest on, by Routh's array.
+
+    None where p has roots that are not in the left half-plane.
+    """
+    one, other = p[::-1][::2], p[::-1][1::2]
+    damping, couplings, basis = other[0], [], []
+    lead = damping
+    while lead > 0:
+        one, other = [c / lead for c in other], one
+        basis.insert(0, one)
+        other = [a - b for a, b in zip(other[1:], [*one[1:], 0], strict=False)]
+        if not other:
+            return damping, couplings, basis
+        lead = other[0]
+        couplings.insert(0, lead)
+    return None
