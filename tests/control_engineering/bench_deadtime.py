@@ -28,7 +28,7 @@ import peers
 from loopbook import s
 from loopbook.deadtime import Loop, System, closed_loop
 from loopbook.families import Family
-from loopbook.ise import integral_of_square, ise, pi_first_order
+from loopbook.integrals import integral_of_square, ise, pi_first_order
 from loopbook.pid import PID
 from loopbook.stability import stability_map
 from loopbook.transfer import first_order

@@ -12,7 +12,7 @@ import sympy
 from draws import draws
 from loopbook import s
 from loopbook.deadtime import Loop, System, collocation
-from loopbook.ise import (
+from loopbook.integrals import (
     UnstableLoopError,
     criteria,
     integral_of_square,

@@ -43,7 +43,7 @@ ORDER = [
     ["quasipolynomials"],
     ["stability"],
     ["deadtime"],
-    ["ise"],
+    ["integrals"],
     ["families"],
     ["identification"],
     ["plants"],

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from loopbook.deadtime import closed_loop as closed_loop
     from loopbook.families import Family as Family
     from loopbook.identification import fit as fit
-    from loopbook.ise import criteria as criteria
+    from loopbook.integrals import criteria as criteria
+    from loopbook.integrals import ise as ise
     from loopbook.pid import PID as PID
     from loopbook.stability import delay_margin as delay_margin
     from loopbook.stability import is_stable as is_stable
@@ -40,9 +41,9 @@ if TYPE_CHECKING:
 
 HOMES = {
     "Family": "families", "Loop": "deadtime", "PID": "pid", "System": "deadtime", "closed_loop": "deadtime",
-    "criteria": "ise", "dead_time": "transfer", "delay_margin": "stability", "first_order": "transfer",
+    "criteria": "integrals", "dead_time": "transfer", "delay_margin": "stability", "first_order": "transfer",
     "fit": "identification", "half_rule": "approximation", "integrator": "transfer",
-    "integrator_with_lag": "transfer", "is_stable": "stability", "margins": "stability",
+    "integrator_with_lag": "transfer", "ise": "integrals", "is_stable": "stability", "margins": "stability",
     "second_order": "transfer", "simc": "tuning", "ultimate": "stability",
 }  # fmt: skip
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from loopbook.deadtime import System
 from loopbook.deadtime.loop import MODES
-from loopbook.ise.family import ise_family
+from loopbook.integrals.family import ise_family
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.symbols import broadcast_values, fraction_of, with_values
 from loopbook.stability.counting import count_roots

@@ -14,7 +14,7 @@ _BY_MODULE = {
     "loopbook.approximation": "half_rule pade zero_rule",
     "loopbook.deadtime": "Loop System",
     "loopbook.identification": "fit",
-    "loopbook.ise": "ise pi_first_order",
+    "loopbook.integrals": "ise pi_first_order",
     "loopbook.instruments": "decode",
     "loopbook.laplace": "evaluate final_value initial_value inverse transform",
     "loopbook.oscillation": "oscillation",

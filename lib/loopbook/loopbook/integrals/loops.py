@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
-from loopbook.ise.residues import by_residues
-from loopbook.ise.responses import by_response
+from loopbook.integrals.error import ErrorFraction, NotApplicableError, error_of
+from loopbook.integrals.residues import by_residues
+from loopbook.integrals.responses import by_response
 from plainmath.validation import one_of
 
 __all__ = ["integral_of_square", "ise"]
