@@ -26,9 +26,10 @@ from rich.table import Table
 
 import peers
 from loopbook import s
-from loopbook.deadtime import Loop, System, closed_loop
+from loopbook.deadtime import System, closed_loop
 from loopbook.families import Family
 from loopbook.integrals import integral_of_square, ise, pi_first_order
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.stability import stability_map
 from loopbook.transfer import first_order

@@ -7,9 +7,9 @@ import pytest
 import sympy
 
 from loopbook import s
-from loopbook.deadtime import Loop
 from loopbook.families import Family
 from loopbook.integrals import ise, pi_first_order
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.transfer import first_order
 

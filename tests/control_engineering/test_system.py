@@ -12,7 +12,8 @@ import sympy
 
 import loopbook as lb
 from loopbook import s, transfer
-from loopbook.deadtime import Loop, System, closed_loop
+from loopbook.deadtime import System, closed_loop
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.transfer import first_order
 

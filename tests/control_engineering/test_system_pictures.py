@@ -9,11 +9,12 @@ import pytest
 import sympy
 from sympy import Rational, exp
 
-from loopbook.deadtime import Loop, System
+from loopbook.deadtime import System
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.deadtime.pictures import bode_plot, nyquist_plot, step_plot
 from loopbook.figures import Picture, PlanePlot, TimePlot
 from loopbook.figures.style import look
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.quasipolynomials import read
 from pictures import in_inches, overlap

@@ -44,6 +44,7 @@ ORDER = [
     ["stability"],
     ["deadtime"],
     ["integrals"],
+    ["loops"],
     ["families"],
     ["identification"],
     ["plants"],

@@ -20,13 +20,13 @@ __path__ = pkgutil.extend_path(__path__, __name__)
 
 if TYPE_CHECKING:
     from loopbook.approximation import half_rule as half_rule
-    from loopbook.deadtime import Loop as Loop
     from loopbook.deadtime import System as System
     from loopbook.deadtime import closed_loop as closed_loop
     from loopbook.families import Family as Family
     from loopbook.identification import fit as fit
     from loopbook.integrals import criteria as criteria
     from loopbook.integrals import ise as ise
+    from loopbook.loops import Loop as Loop
     from loopbook.pid import PID as PID
     from loopbook.stability import delay_margin as delay_margin
     from loopbook.stability import is_stable as is_stable
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from loopbook.tuning import simc as simc
 
 HOMES = {
-    "Family": "families", "Loop": "deadtime", "PID": "pid", "System": "deadtime", "closed_loop": "deadtime",
+    "Family": "families", "Loop": "loops", "PID": "pid", "System": "deadtime", "closed_loop": "deadtime",
     "criteria": "integrals", "dead_time": "transfer", "delay_margin": "stability", "first_order": "transfer",
     "fit": "identification", "half_rule": "approximation", "integrator": "transfer",
     "integrator_with_lag": "transfer", "ise": "integrals", "is_stable": "stability", "margins": "stability",

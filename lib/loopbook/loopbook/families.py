@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loopbook.deadtime import System
-from loopbook.deadtime.loop import MODES
+from loopbook.integrals.error import MODES
 from loopbook.integrals.family import ise_family
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.symbols import broadcast_values, fraction_of, with_values
@@ -31,10 +31,10 @@ __all__ = ["Family"]
 class Family:
     """A process under feedback control, for many values of the symbols in it: of settings, or of the process.
 
-    The loop is that of `deadtime.Loop`. All results are arrays of the shape that the values have together.
+    The loop is that of `loops.Loop`. All results are arrays of the shape that the values have together.
 
     Arguments:
-        process, controller: as for `deadtime.Loop`, with symbols.
+        process, controller: as for `loops.Loop`, with symbols.
         **values: the values of the symbols by their names, numbers or arrays that fit together.
     Attributes:
         shape: that of the results.

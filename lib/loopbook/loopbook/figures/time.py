@@ -28,7 +28,7 @@ Drawn: TypeAlias = "Signal | tuple[Signal, str | int]"
 
 
 class Recorded(Protocol):
-    """What `trends` draws: a `simulation.Run`, a `deadtime.LoopResponse`, or what has their signals."""
+    """What `trends` draws: a `simulation.Run`, a `loops.LoopResponse`, or what has their signals."""
 
     @property
     def times(self) -> np.ndarray:
@@ -448,7 +448,7 @@ def trends(
     """Plot loops as an operator sees them: setpoint and measurement above, control signal below.
 
     Arguments:
-        runs: a `simulation.Run` or a `deadtime.LoopResponse`, or ``{label: run}`` for several with the same times and
+        runs: a `simulation.Run` or a `loops.LoopResponse`, or ``{label: run}`` for several with the same times and
             the same setpoint.
         title: written above the plot; begins with the name of the book's figure where there is one.
         disturbances: names of inputs of the plant, each shown in a panel of its own below the others.

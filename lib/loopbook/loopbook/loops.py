@@ -4,30 +4,27 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy
 
-from loopbook.deadtime.system import System, return_difference
+from loopbook.deadtime import System
+from loopbook.deadtime.system import return_difference
+from loopbook.integrals.error import blocks_of, error_after_step
 from loopbook.laplace import evaluate
-from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, times
+from loopbook.quasipolynomials import DelayFraction
 from loopbook.stability import Margins, dominant_poles, is_stable, margins
 from loopbook.transfer import transfer_function
-from plainmath.expressions import function_of, s, t
-from plainmath.validation import did_you_mean, one_of, times_from_zero
+from plainmath.expressions import function_of, t
+from plainmath.validation import did_you_mean, times_from_zero
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from loopbook.figures import Picture, PlanePlot, TimePlot
 
-__all__ = ["MODES", "Loop", "LoopResponse"]
-
-MODES = ("servo", "regulator")
-STEP: Quasipolynomial = {Fraction(0): (0, 1)}  # what a transfer function is divided by for a step
+__all__ = ["Loop", "LoopResponse"]
 
 
 @dataclass(frozen=True, repr=False)
@@ -88,6 +85,7 @@ class Loop:
     Raises:
         ValueError: for symbols, an algebraic loop without solution, or what is no `System`.
 
+    >>> from loopbook import s
     >>> from loopbook.pid import PID
     >>> loop = Loop(2 * sympy.exp(-s) / (4 * s + 1), PID(1, Ti=4))
     >>> loop.servo
@@ -98,15 +96,7 @@ class Loop:
 
     def __init__(self, process: object, controller: object, from_setpoint: object = None):
         self._given = process, controller, controller if from_setpoint is None else from_setpoint
-        try:
-            self.process_fraction, self.controller_fraction, self.setpoint_fraction = (
-                DelayFraction.coprime(x.numerator, x.denominator) for x in map(read, self._given)
-            )
-        except ValueError:
-            blocks = [transfer_function(x) for x in self._given]
-            if symbols := sorted(map(str, set().union(*(x.free_symbols for x in blocks)) - {s})):
-                raise ValueError(f"give a number for {', '.join(symbols)} in the loop of {blocks[0]}") from None
-            raise
+        self.process_fraction, self.controller_fraction, self.setpoint_fraction = blocks_of(*self._given)
         self.open_fraction = self.controller_fraction * self.process_fraction
         self._difference = return_difference(self.open_fraction)
 
@@ -171,22 +161,12 @@ class Loop:
     def error(self, mode: str) -> System:
         """Return E(s), the control error y_SP - y for a unit step of the setpoint ("servo") or load ("regulator").
 
+        >>> from loopbook import s
         >>> from loopbook.pid import PID
         >>> Loop(1 / s, PID(2)).error("servo")
         System(1/(s + 2))
         """
-        P, R, L = self.process_fraction, self.setpoint_fraction, self.open_fraction
-        returned = times(STEP, plus(L.denominator, L.numerator))  # common factors are cancelled once
-        if one_of("the mode", mode, MODES) == "regulator":
-            above = plus({}, times(P.numerator, L.denominator), -1)
-            return System(DelayFraction(above, times(P.denominator, returned)))
-        if self.controller_fraction == R:
-            return System(DelayFraction(L.denominator, returned))
-        # 1/(1 + L) - (R/C) L/(1 + L), over the denominator of R P
-        own = times(R.denominator, P.denominator)
-        through = times(times(R.numerator, P.numerator), L.denominator)
-        above = plus(times(plus(L.denominator, L.numerator), own), through, -1)
-        return System(DelayFraction(above, times(own, returned)))
+        return System(error_after_step(self.process_fraction, self.controller_fraction, self.setpoint_fraction, mode))
 
     # ---- stability
 
@@ -194,6 +174,7 @@ class Loop:
     def is_stable(self) -> bool:
         """Whether the loop is internally stable: a pole that controller and process cancel counts, too.
 
+        >>> from loopbook import s
         >>> Loop(1 / (s - 1), 2 * (s - 1) / (s + 1)).is_stable
         False
         """
@@ -202,6 +183,7 @@ class Loop:
     def poles(self, count: int = 2) -> list[complex]:
         """Return the dominant poles of the closed loop, as `stability.dominant_poles` does.
 
+        >>> from loopbook import s
         >>> Loop(1 / s, 2).poles()
         [(-2+0j)]
         """
@@ -210,6 +192,7 @@ class Loop:
     def margins(self) -> Margins:
         """Return gain margin, phase margin, delay margin and Ms, as `stability.margins` does for the open loop.
 
+        >>> from loopbook import s
         >>> from loopbook.pid import PID
         >>> round(Loop(sympy.exp(-s) / s, PID(1)).margins().gain_margin, 4)    # pi/2
         1.5708
@@ -225,6 +208,7 @@ class Loop:
             omega: the lowest and the highest frequency; by themselves a decade around the corner frequencies.
             options: title, unit of time, decibels, as `pictures.bode_plot` takes them.
 
+        >>> from loopbook import s
         >>> Loop(sympy.exp(-s) / s, sympy.Rational(1, 2)).bode()
         <magnitude and phase [deg] against omega [rad/s]; gain margin 3.14, phase margin 61.4°>
         """
@@ -235,6 +219,7 @@ class Loop:
     def nyquist(self, omega: ArrayLike | None = None, **options: object) -> PlanePlot:
         """Plot the open loop in the complex plane, as `pictures.nyquist_plot` does, with the margins as in `bode`.
 
+        >>> from loopbook import s
         >>> Loop(sympy.exp(-s) / s, sympy.Rational(1, 2)).nyquist()
         <imaginary part against real part; gain margin 3.14, phase margin 61.4°, Ms 1.59>
         """
@@ -249,6 +234,7 @@ class Loop:
             end: the last time; by itself late enough for the response to settle.
             options: title, unit of time, as `pictures.step_plot` takes them.
 
+        >>> from loopbook import s
         >>> Loop(sympy.exp(-s) / s, sympy.Rational(1, 2)).plot_step()
         <setpoint, y(t); u(t) against t [s]; overshoot 4.05 %, rise time 1.91 s, settling time 6.06 s>
         """
@@ -267,6 +253,7 @@ class Loop:
         Returns:
             A `LoopResponse`, which `figures.trends` draws.
 
+        >>> from loopbook import s
         >>> from loopbook.pid import PID
         >>> Loop(sympy.exp(-s) / s, PID(0.5)).run([2, 3])["y"].round(6)
         array([0.5  , 0.875])
