@@ -168,8 +168,8 @@ class Family:
     def margins(self) -> Margins:
         """Return gain, phase and delay margins and Ms, with their frequencies: `stability.Margins` of arrays.
 
-        There is no short way for many at once: each loop takes what `Loop.margins` does, 10 to 30 ms. Those that are not
-        stable have Ms = inf and nan for all else.
+        There is no short way for many at once: each loop takes what `Loop.margins` does, 10 to 30 ms. Those that
+        are not stable have Ms = inf and nan for all else.
 
         >>> import sympy
         >>> from loopbook import s
