@@ -17,17 +17,20 @@ from loopbook.integrals import Criteria, criteria
 from loopbook.integrals.error import MODES
 from loopbook.integrals.family import ise_family
 from loopbook.loops import Loop
+from loopbook.pid import PID
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.symbols import broadcast_values, fraction_of, with_values
 from loopbook.stability import Margins
 from loopbook.stability.counting import count_roots
 from loopbook.stability.sensitivity import largest_sensitivities
 from loopbook.transfer import transfer_function
+from plainmath.expressions import exact
 from plainmath.validation import one_of, positive, times_from_zero
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import sympy
     from numpy.typing import ArrayLike
 
 __all__ = ["Family"]
@@ -69,6 +72,7 @@ class Family:
             )
         self._values, self.shape = broadcast_values(values)
         self._process, self._controller = P, C
+        self._given = controller
 
     # ---- the loop in numbers
 
@@ -151,7 +155,7 @@ class Family:
 
     @functools.cached_property
     def loops(self) -> np.ndarray:
-        """Each member as a `Loop`, an array of objects.
+        """Each member as a `Loop`, an array of objects; decimal values are taken as they are meant.
 
         >>> import sympy
         >>> from loopbook import s
@@ -159,11 +163,19 @@ class Family:
         >>> Family(1 / s, K, K=[0.5, 2]).loops[1].servo
         System(2/(s + 2))
         """
-        blocks = [with_values(block, self._values) for block in (self._process, self._controller)]
+        symbols = [x for x in (self._process + self._controller).free_symbols if str(x) in self._values]
         found = np.empty(math.prod(self.shape), dtype=object)
         for point in range(found.size):
-            found[point] = Loop(*(fraction_of(*block, point) for block in blocks))
+            values = {x: exact(float(self._values[str(x)][point])) for x in symbols}
+            found[point] = Loop(self._process.xreplace(values), self._controller_with(values))
         return found.reshape(self.shape)
+
+    def _controller_with(self, values: dict[sympy.Expr, sympy.Expr]) -> PID | sympy.Expr:
+        """The controller with numbers for its symbols, a `PID` if one was given."""
+        if not isinstance(self._given, PID):
+            return self._controller.xreplace(values)
+        times = {name: getattr(self._given, name).xreplace(values) for name in ("Kp", "Ti", "Td", "Tf")}
+        return PID(**times, form=self._given.form)
 
     def margins(self) -> Margins:
         """Return gain, phase and delay margins and Ms, with their frequencies: `stability.Margins` of arrays.

@@ -33,7 +33,8 @@ __all__ = [
     "positive_numbers", "real_numbers", "times_from_zero", "whole",
 ]  # fmt: skip
 
-P, R = ParamSpec("P"), TypeVar("R")
+P = ParamSpec("P")
+R = TypeVar("R")
 A_FINITE_NUMBER = "a finite real number"
 A_POSITIVE_NUMBER = "a positive number"
 NOT_NEGATIVE = "a number that is not negative"
