@@ -26,9 +26,10 @@ from rich.table import Table
 
 import peers
 from loopbook import s
-from loopbook.deadtime import Loop, System, closed_loop
+from loopbook.deadtime import System, closed_loop
 from loopbook.families import Family
-from loopbook.ise import integral_of_square, ise, pi_first_order
+from loopbook.integrals import integral_of_square, ise, pi_first_order
+from loopbook.loops import Loop
 from loopbook.pid import PID, Controller
 from loopbook.plants import Process
 from loopbook.simulation import simulate

@@ -587,7 +587,7 @@ REFUSED = {
     "a signal that is text": (lambda: simulate(TANK, until=100, step=1, u="45"), "u: '45' is of type str"),
     "a short array": (lambda: simulate(TANK, until=100, step=1, u=[1, 2, 3]), "u has 3 values for 101 samples"),
     "NaN in an array": (lambda: simulate(TANK, until=2, step=1, u=[1, math.nan, 3]), "u is nan at t = 1"),
-    "NaN as a number": (lambda: simulate(TANK, LOOP, until=100, setpoint=math.nan), "setpoint: nan is of type float"),
+    "NaN as a number": (lambda: simulate(TANK, LOOP, until=100, setpoint=math.nan), "setpoint: nan is not a number"),
     "negative noise": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, noise=-1), "deviation is -1"),
     "half a stretch by hand": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, manual=[(0, 5)]), "manual has"),
     "another plant's run": (
