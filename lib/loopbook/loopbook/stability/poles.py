@@ -189,11 +189,8 @@ def _inside(sums, left, right, most, removable=0):
                 p = points[k]
                 if there[k] and all(abs(p - q) > close * size[k] for q in distinct):
                     distinct.append(complex(p.real, 0.0 if abs(p.imag) < flat * size[k] else p.imag))
-            found = [
-                p
-                for p in distinct
-                for _ in range(_multiplicity(sums, derivative, p, [*distinct, *[0j][:removable]], top))
-            ]
+            apart = [*distinct, *[0j][:removable]]
+            found = [p for p in distinct for _ in range(_multiplicity(sums, derivative, p, apart, top))]
             if sum(2 if p.imag else 1 for p in found) == most:
                 return found
     return found
