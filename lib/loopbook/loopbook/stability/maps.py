@@ -29,7 +29,8 @@ def stability_map(loop: object, **values: ArrayLike) -> np.ndarray:
         on the limit of stability or so close to it that it is not decided, and ``10**9`` where there are infinitely
         many unstable poles.
     Raises:
-        ValueError: for other symbols than two with values, a negative dead time, a loop that is improper, or as `unstable_roots`.
+        ValueError: for other symbols than two with values, a negative dead time, a loop that is improper, or as
+            `unstable_roots`.
 
     >>> import sympy
     >>> K, delay = sympy.symbols("K delay")
