@@ -183,11 +183,16 @@ def _inside(sums, left, right, most, removable=0):
         inside = (points.real > left) & (points.real < right) & (points.imag > -1e-9 * top)
         points, rest, size = points[inside], rest[inside], np.maximum(abs(points[inside]), 1e-9 * top)
         there = rest <= 1e-5 * np.minimum(size, right - left)
+        points, rest, size = (each[there] for each in (points, rest, size))
+        best = np.argsort(rest)
+        # of those that have come to one place the best, so that few are left to compare
+        _, first = np.unique(np.round(points[best] / (1e-12 * top)), return_index=True)
+        best = best[np.sort(first)]
         for close, flat in ((1e-6, 1e-8), (1e-3, 1e-3)):  # rounding scatters what leads to a triple root
             distinct = []
-            for k in np.argsort(rest):
+            for k in best:
                 p = points[k]
-                if there[k] and all(abs(p - q) > close * size[k] for q in distinct):
+                if all(abs(p - q) > close * size[k] for q in distinct):
                     distinct.append(complex(p.real, 0.0 if abs(p.imag) < flat * size[k] else p.imag))
             apart = [*distinct, *[0j][:removable]]
             found = [p for p in distinct for _ in range(_multiplicity(sums, derivative, p, apart, top))]
@@ -203,13 +208,15 @@ def _newton(sums, derivative, points, removable):
         slope = derivative.at(points) / sums.at(points)
         return 1 / (slope - removable / points if removable else slope)
 
+    moving = np.arange(len(points))
     with np.errstate(all="ignore"):
         for _ in range(60):
-            step = change(points)
-            points = points - step
-            points = points[np.isfinite(points)]
-            if not len(points) or (abs(step) <= 1e-14 * (1 + abs(step.real))).all():
+            step = change(points[moving])
+            points[moving] -= step
+            moving = moving[np.isfinite(step) & (abs(step) > 1e-14 * (1 + abs(step.real)))]
+            if not len(moving):
                 break
+        points = points[np.isfinite(points)]
         rest = abs(change(points))
     return points, rest
 
