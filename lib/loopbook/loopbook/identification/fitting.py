@@ -103,7 +103,8 @@ class Fit:
             {"residual": (self.y - self.fitted, "raw")},
             {"$u$": (self.u, "control signal")},
         ]
-        names = [f"{name} [{of}]" if of else name for name, of in zip(("$y$", "residual", "$u$"), (of_y, of_y, of_u))]  # noqa: B905
+        units = {"$y$": of_y, "residual": of_y, "$u$": of_u}
+        names = [f"{name} [{of}]" if of else name for name, of in units.items()]
         plot = time_plot(panels, self.times, title=title, xlabel=f"$t$ [{unit}]", ylabel=names)
         plot.figure.axes[1].axhline(0, **ZERO)
         if self.hold == "zero order":
