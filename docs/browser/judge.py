@@ -88,6 +88,7 @@ class Judge:
             del sys.modules["scipy"]
         sys.meta_path.insert(0, self.later)
         self._answer = importlib.import_module("loopbook.exercises.forms").answer
+        importlib.import_module("exercisebook.grammar").parser()  # before the first answer waits for it
 
     def prepare(self, text: str) -> str:
         """Compute the key of the exercise of a request and judge it, once: that may take longer than an answer."""

@@ -43,7 +43,7 @@ from cheat_sheet.stated import (
 )
 from loopbook import s, t
 from loopbook.approximation import half_rule, pade, taylor
-from loopbook.ise import residue_method
+from loopbook.integrals import residue_method
 from loopbook.laplace import transform
 from loopbook.latex import latex
 from loopbook.oscillation import Oscillation
@@ -196,7 +196,7 @@ def ise_of_integrator():
 
 
 def squared_error():
-    """The closed form of `ise.pi_first_order`, in the symbols of its docstring."""
+    """The closed form of `integrals.pi_first_order`, in the symbols of its docstring."""
     rows = (
         (rf"$L = a\,e^{{-\theta s}}/s$:  {shown(Is('J', ise_of_integrator()))}",),
         (f"PI control of a lag with dead time:  {shown(Is('J', ISE))}  with",),

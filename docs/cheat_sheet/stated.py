@@ -1,7 +1,7 @@
 """The formulas of the cheat sheet that no function of the library returns with symbols; a test compares each with one.
 
 They are the rule T3 for zeros, what a relay tells, the margins of a dead time behind an integrator, and the closed form
-of the integral of the squared error in the symbols of `loopbook.ise.pi_first_order`.
+of the integral of the squared error in the symbols of `loopbook.integrals.pi_first_order`.
 """
 
 from sympy import atan, pi, sqrt, tan

@@ -26,10 +26,13 @@ from rich.table import Table
 
 import peers
 from loopbook import s
-from loopbook.deadtime import Loop, System, closed_loop
+from loopbook.deadtime import System, closed_loop
 from loopbook.families import Family
-from loopbook.ise import integral_of_square, ise, pi_first_order
-from loopbook.pid import PID
+from loopbook.integrals import integral_of_square, ise, pi_first_order
+from loopbook.loops import Loop
+from loopbook.pid import PID, Controller
+from loopbook.plants import Process
+from loopbook.simulation import simulate
 from loopbook.stability import stability_map
 from loopbook.transfer import first_order
 from medians import compared, medians, seconds, shown
@@ -263,10 +266,35 @@ def the_settings(runs: int) -> Table:
     return table
 
 
+# ------------------------------------------------------------------------------------------------ sampled loops
+
+
+def the_sampled_loop(runs: int) -> Table:
+    """A PI controller that runs once a sample, on a lag with a dead time of 13 samples, for 100,000 samples."""
+    K, T, _, Kp, Ti, step, count = numbers = 2, 5, 13, 0.5, 5, 0.1, 100_000
+    process = Process(first_order(K, T, delay=sympy.Rational(13, 10)))
+
+    def simulated(**settings: object) -> np.ndarray:
+        return simulate(process, Controller(PID(Kp, Ti), step, **settings), until=count * step, setpoint=1)["y"]
+
+    tasks = {
+        "simulate": simulated,
+        "simulate, with limits and anti wind-up": lambda: simulated(limits=(0, 1)),
+        "simulate, the plant alone": lambda: simulate(process, until=count * step, step=step, u=1),
+        "a loop of one's own, zero-order hold": lambda: peers.held_loop(*numbers),
+        "python-control, forced_response": lambda: peers.sampled_loop(*numbers),
+    }
+    exact = peers.held_loop(*numbers)
+    errors = {name: float(abs(task() - exact).max()) for k, (name, task) in enumerate(tasks.items()) if k not in (1, 2)}
+    table = Table("", "time", "ratio", "difference", title=f"A sampled loop, {count:,} samples: median of {runs}")
+    compared(table, runs, tasks, errors)
+    return table
+
+
 if __name__ == "__main__":
     # with matrices this small, threads only wait for each other, on all sides
     if "OPENBLAS_NUM_THREADS" not in os.environ:
         os.execve(sys.executable, [sys.executable, *sys.argv], os.environ | {"OPENBLAS_NUM_THREADS": "1"})
     console = Console()
-    for table in (the_responses, the_margins, the_integrals, the_map, the_settings):
+    for table in (the_responses, the_margins, the_integrals, the_map, the_settings, the_sampled_loop):
         console.print(table(runs=3 if "--quick" in sys.argv else 9))

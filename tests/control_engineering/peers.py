@@ -224,6 +224,32 @@ class PISettings:
         return 1 / np.sqrt(middle - (right - left) ** 2 / (8 * (left - 2 * middle + right)))
 
 
+# ------------------------------------------------------------------------------------------------ sampled loops
+
+
+def held_loop(K: float, T: float, whole: int, Kp: float, Ti: float, step: float, count: int) -> np.ndarray:
+    """A lag with a dead time of whole samples under PI control, a step of the setpoint: the output as one writes it."""
+    a = math.exp(-step / T)
+    y, integral, late, outputs = 0.0, 0.0, [0.0] * whole, []
+    for k in range(count + 1):
+        outputs.append(y)
+        error = 1 - y
+        late.append(Kp * error + integral)
+        integral += Kp * step / Ti * error
+        y = a * y + K * (1 - a) * late[k]
+    return np.array(outputs)
+
+
+def sampled_loop(K: float, T: float, whole: int, Kp: float, Ti: float, step: float, count: int) -> np.ndarray:
+    """The same by python-control, in discrete time."""
+    a = math.exp(-step / T)
+    process = control.tf([K * (1 - a)], [1, -a, *[0] * whole], step)
+    pi = control.tf([Kp, Kp * (step / Ti - 1)], [1, -1], step)
+    servo = control.ss(control.feedback(process * pi))
+    times = step * np.arange(count + 1)
+    return control.forced_response(servo, times, np.ones(count + 1)).outputs
+
+
 # ------------------------------------------------------------------------------------------------ references
 
 Function = Callable[[mpmath.mpc], mpmath.mpc]

@@ -36,6 +36,30 @@ def test_one_fault_has_one_sentence_everywhere(fault, expected):
         fault()
 
 
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: transfer.first_order(math.nan, 5), ValueError, "K is nan: expected a number"),
+        (lambda: System(math.nan), ValueError, "nan is not a number: expected a number or an expression"),
+        (
+            lambda: transfer.first_order(2, 5, theta=4),
+            TypeError,
+            "first_order has no argument 'theta': expected one of K",
+        ),
+        (
+            lambda: transfer.integrator(2, dealy=4),
+            TypeError,
+            "integrator has no argument 'dealy': did you mean 'delay'?",
+        ),
+        (lambda: pid.PID(2, Ki=4), TypeError, "PID has no argument 'Ki': expected one of Kp, Ti, Td, Tf, form"),
+        (lambda: System(1 / s).bode(titel="L"), TypeError, "bode_plot has no argument 'titel': did you mean 'title'?"),
+    ],
+)
+def test_what_is_no_number_and_no_argument_is_said(call, error, message):
+    with pytest.raises(error, match=re.escape(message)):
+        call()
+
+
 def test_one_fault_in_an_array_has_one_sentence_everywhere():
     process = transfer.first_order(1, 1, 1)
     for fault in (lambda: boundary_pi(process, [-1, 1]), lambda: boundary_pid(process, [-1, 1], 0, 0)):

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from draws import draws
 from loopbook import s
-from loopbook.deadtime import Loop, System
+from loopbook.deadtime import System
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.quasipolynomials import read
 from loopbook.quasipolynomials.arrays import Quasipolynomials

@@ -14,8 +14,9 @@ from scipy.special import gammainc
 
 from draws import draws
 from loopbook import s, t
-from loopbook.deadtime import Loop, System, closed_loop, normal_form
+from loopbook.deadtime import System, closed_loop, normal_form
 from loopbook.laplace import evaluate, inverse, transform
+from loopbook.loops import Loop
 from loopbook.pid import PID, Controller
 from loopbook.plants import Process
 from loopbook.simulation import simulate

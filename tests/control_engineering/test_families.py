@@ -7,9 +7,9 @@ import pytest
 import sympy
 
 from loopbook import s
-from loopbook.deadtime import Loop
 from loopbook.families import Family
-from loopbook.ise import ise, pi_first_order
+from loopbook.integrals import ise, pi_first_order
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.transfer import first_order
 
@@ -85,6 +85,29 @@ def test_results_have_the_shape_of_the_values():
     assert alone.step([9]) == pytest.approx(family.step([9])[1, 1])
 
 
+def test_margins_and_criteria_are_those_of_the_members():
+    family = Family(first_order(2, 5, delay=4), PID(Kp, Ti), Kp=[[0.1], [0.3], [5]], Ti=[3, 6])
+    loops, margins, criteria = family.loops, family.margins(), family.criteria(mode="regulator")
+    assert loops[1, 1] == Loop(first_order(2, 5, delay=4), PID(0.3, 6))
+    assert loops[1, 1].controller == PID(0.3, 6)
+    assert margins.gain_margin.shape == criteria.IAE.shape == family.shape
+    assert np.isnan(margins.phase_margin[2]).all()
+    assert np.isinf([margins.Ms[2], criteria.IAE[2]]).all()
+    for point in ((0, 0), (1, 1)):
+        assert [x[point] for x in margins] == pytest.approx(loops[point].margins(), nan_ok=True)
+        assert [x[point] for x in criteria] == pytest.approx(loops[point].criteria("regulator"))
+
+
+@pytest.mark.parametrize("by", ["IAE", "ise", "ITAE"])
+def test_the_best_setting_is_the_least_within_the_limit(by):
+    family = Family(first_order(2, 5, delay=4), PID(Kp, Ti), Kp=np.linspace(0.1, 0.7, 4)[:, None], Ti=[4, 6, 9])
+    best = family.best(by, Ms=1.7, mode="regulator")
+    values = np.where(family.Ms() <= 1.7, getattr(family.criteria("regulator"), by.upper()), math.inf)
+    place = np.unravel_index(values.argmin(), values.shape)
+    assert best == {"Kp": pytest.approx(np.linspace(0.1, 0.7, 4)[place[0]]), "Ti": [4, 6, 9][place[1]]}
+    assert Loop(first_order(2, 5, delay=4), PID(**best)).Ms <= 1.7
+
+
 @pytest.mark.parametrize(
     ("question", "message"),
     [
@@ -93,6 +116,12 @@ def test_results_have_the_shape_of_the_values():
         (lambda: Family(1 / s, Kp / (Ti * s), Kp=[1, 2], Ti=[1, 2, 3]), "expected shapes that fit"),
         (lambda: Family(sympy.exp(-delay * s) / s, 1, delay=[-1]).Ms(), "dead time -1"),
         (lambda: Family(1 / s, Kp, Kp=[1]).ise("load"), "the mode is 'load'"),
+        (lambda: Family(1 / s, Kp, Kp=[1]).criteria("load"), "the mode is 'load'"),
+        (lambda: Family(1 / s, Kp, Kp=[1]).best("IEA"), "by is 'IEA': expected one of ISE, IAE, ITAE, ITSE"),
+        (
+            lambda: Family(sympy.exp(-s) / s, Kp, Kp=[1]).best(Ms=1.2),
+            "no loop has an Ms of at most 1.2: the smallest is",
+        ),
         (lambda: Family(1 / s, Kp, Kp=[1]).step([1], "L"), "the signal is 'L'"),
         (lambda: Family(1 / s, Kp, Kp=[1]).step([-1]), "the times contain -1"),
         (lambda: Family(s, Kp, Kp=[1]).Ms(), "is improper"),

@@ -16,7 +16,6 @@ from PIL import Image
 from sympy import DiracDelta, Heaviside, exp
 
 from loopbook.approximation import half_rule
-from loopbook.deadtime import Loop
 from loopbook.deadtime.pictures import nyquist_plot
 from loopbook.diagrams import block, block_diagram
 from loopbook.figures import PlanePlot, TimePlot, half_rule_plot, level_plot, map_plot, plane_plot, time_plot, trends
@@ -24,6 +23,7 @@ from loopbook.figures.labels import free_place
 from loopbook.figures.picture import with_few_colours
 from loopbook.figures.style import DOTS_PER_INCH, GREY, MODELS, ROLES, STYLE, WIDTH, look
 from loopbook.laplace import s, t
+from loopbook.loops import Loop
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
 from loopbook.signals import stepwise

@@ -85,6 +85,41 @@ def test_where_standard_errors_are_rough_is_said():
         assert ("the errors are rough" in shown) == rough
 
 
+def coloured(first, seed, count=300):
+    """A record with noise of first order, two per cent of what the measurement does."""
+    times, u, y = record("first order", [10.0], 4.3, 0, seed, count=count)
+    size, noise = 0.02 * np.ptp(y), np.random.default_rng(seed).normal(size=count)
+    for k in range(1, count):
+        noise[k] = first * noise[k - 1] + math.sqrt(1 - first**2) * noise[k]
+    return times, u, y + size * noise
+
+
+@pytest.mark.parametrize(("first", "alarms"), [(0, (0, 0.05)), (0.5, (1, 1)), (0.9, (1, 1))])
+@pytest.mark.daily(2)
+def test_correlated_noise_is_told_and_the_errors_are_as_large_as_they_say(first, alarms):
+    """For white noise 45 % of the intervals held the lag where the noise had a correlation of 0.9."""
+    fits = [fit(*coloured(first, seed)) for seed in range(60)]
+    low, high = alarms
+    assert low <= np.mean([found.whiteness < 0.01 for found in fits]) <= high
+    for name, true in {"K": 2, "T1": 10, "delay": 4.3}.items():
+        held = [abs(found.parameters[name] - true) < 1.96 * found.errors[name] for found in fits]
+        assert np.mean(held) > 0.82, name
+
+
+def test_where_nothing_is_left_nothing_is_correlated():
+    assert fit(*record("first order", [8.0], 3.3, 0, seed=1)).whiteness == 1
+    assert "correlated" in repr(fit(*coloured(0.9, seed=1)))
+    assert "correlated" not in repr(fit(*coloured(0, seed=2)))
+
+
+def test_the_picture_of_a_fit():
+    found = fit(*coloured(0.9, seed=1))
+    plot = found.plot("A tank", unit="min", of_y="°C", of_u="%")
+    assert [axes.get_ylabel() for axes in plot.figure.axes] == ["$y$ [°C]", "residual [°C]", "$u$ [%]"]
+    assert plot.lines["residual"].get_ydata() == pytest.approx(found.y - found.fitted)
+    assert plot.lines["$u$"].get_drawstyle() == "steps-post"
+
+
 def test_a_fit_goes_through_a_pickle():
     found = fit(*record("first order", [8.0], 3.3, 0.1, seed=1))
     assert repr(pickle.loads(pickle.dumps(found))) == repr(found)

@@ -253,7 +253,9 @@ def test_a_closed_loop_at_rest_tells_next_to_nothing():
 def test_what_an_unmeasured_load_moves_tells_a_wrong_model_with_small_errors():
     found = fit(*closed_loop(0.1, 0, load=stepwise(0, {50: 2})))
     assert found.parameters["K"] < 0.2  # the true one is 2
-    assert found.errors["K"] < 0.02
+    assert found.errors["K"] < 0.05
+    assert "correlated (Ljung-Box p = " in repr(found)
+    assert "not where something unmeasured acts" in repr(found)
 
 
 def test_a_drifting_measurement_makes_the_feedback_look_like_the_process():

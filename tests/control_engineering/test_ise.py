@@ -11,8 +11,8 @@ import sympy
 
 from draws import draws
 from loopbook import s
-from loopbook.deadtime import Loop, System, collocation
-from loopbook.ise import (
+from loopbook.deadtime import System, collocation
+from loopbook.integrals import (
     UnstableLoopError,
     criteria,
     integral_of_square,
@@ -20,6 +20,7 @@ from loopbook.ise import (
     pi_first_order,
     residue_method,
 )
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.stability import UndecidedError, is_closed_loop_stable
 from loopbook.transfer import first_order

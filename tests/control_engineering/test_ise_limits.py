@@ -8,10 +8,10 @@ import pytest
 import sympy
 
 from loopbook import s
-from loopbook.deadtime import Loop
-from loopbook.ise import UnstableLoopError, criteria, integral_of_square, ise
-from loopbook.ise.error import ErrorFraction
-from loopbook.ise.modes import Modes, slow_modes
+from loopbook.integrals import UnstableLoopError, criteria, integral_of_square, ise
+from loopbook.integrals.error import ErrorFraction
+from loopbook.integrals.modes import Modes, slow_modes
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.stability import ultimate
 from test_ise import by_frequencies

@@ -30,7 +30,7 @@ from loopbook.plants import (
     name_of,
 )
 from loopbook.signals import stepwise
-from loopbook.simulation import delayed_states, integrator, simulate
+from loopbook.simulation import delayed_states, driver, held, integrator, simulate
 from loopbook.transfer import feedback, first_order, response, step_response
 
 EXACT = 1e-6  # relative to the size of the response
@@ -190,7 +190,7 @@ def test_a_run_that_needs_too_many_steps_does_not_grow_beyond_all_numbers(monkey
         with pytest.raises(
             ValueError, match="x_2 needs more than 10 steps between t = 0 and 50: an oscillation is too fast"
         ):
-            simulate(Process(H), until=100, step=50, u=1)
+            simulate(Process(H), until=100, step=50, u=t)
 
 
 def test_the_history_is_no_longer_than_the_longest_dead_time_until_more_is_asked():
@@ -206,6 +206,63 @@ def test_the_history_is_no_longer_than_the_longest_dead_time_until_more_is_asked
     every = simulate(Recycle(tau_m=45), until=50, step=1, c_in=2 + sympy.sin(t))._past.integrator  # which keeps it all
     assert every.oldest == 0
     assert asked == pytest.approx([every.state_at(moment)[0] for moment in moments], abs=1e-9)
+
+
+# A linear plant whose inputs are held.
+
+HELD = {
+    "a lag, two dead times": (E(-13 * s / 10) + 2 * E(-4 * s)) / (5 * s + 1),
+    "an integrator": E(-s / 2) / (s * (2 * s + 1)),
+    "a resonance": 2 / (9 * s**2 + s / 2 + 1),
+    "stiff": E(-s / 3) / ((s + 1) * (s / 10_000 + 1)),
+    "unstable": E(-s / 5) / (20 * s - 1),
+}
+STEPS = {"setpoint": stepwise(1, {20: 0.5}), "d": stepwise(0, {sympy.Rational(123, 10): 0.4})}
+
+
+@pytest.mark.parametrize("H", HELD.values(), ids=HELD)
+@pytest.mark.parametrize(
+    "settings",
+    [{}, {"limits": (0, 1.2), "T_filter": 0.5}, {"ramp": 0.2, "w_p": 0.3, "control_range": (-1, 3)}],
+    ids=["PI", "limits", "ramp"],
+)
+@pytest.mark.daily(3)
+def test_what_is_held_goes_from_sample_to_sample_by_a_recurrence(H, settings, monkeypatch):
+    """Exact to rounding; and, in parts, with noise and by hand, what the integration says to its tolerance."""
+
+    def run(plant=Process(H)):  # noqa: B008
+        controller, more = Controller(PID(0.4, Ti=6), 0.7, **settings), STEPS | {"noise": 0.02}
+        first = simulate(plant, controller, until=21, manual=[(7, 10, 0.3), (14, 15, None)], **more)
+        assert isinstance(first._past.integrator, kind)
+        later = simulate(plant, Controller(PID(0.3, Ti=6), 0.5, **settings), until=40, after=first, **more)
+        return later, simulate(plant, controller, until=42, setpoint=1)
+
+    kind = held.HeldIntegrator
+    now, exact = run()
+    assert close(exact["y"] * 1e5, System(H).response(exact.times, exact["u"]) * 1e5)
+    kind = integrator.PlantIntegrator
+    monkeypatch.setattr(driver, "_integrator", kind)
+    before, _ = run()
+    for name in before.signals:
+        assert now[name] == pytest.approx(before[name], rel=1e-6, abs=1e-6), name
+
+
+def test_a_plant_alone_is_a_recurrence_too():
+    times = np.arange(2001) * 0.7
+    u = np.random.default_rng(1).normal(size=2001)
+    for H in (2 * E(-13 * s / 10) / (5 * s + 1), 1 / (9 * s**2 + s / 2 + 1), 1 / (3 * s + 1) ** 4):
+        run = simulate(Process(H), until=times[-1], step=0.7, u=u)
+        assert np.abs(run["y"] - System(H).response(run.times, u)).max() < 1e-11
+
+
+def test_an_input_that_stays_may_act_in_a_product():
+    tank, P = HeatedTank(), stepwise(10_000, {10: 9000})
+    run = simulate(tank, until=100, step=1, P=P, F=0.3)
+    assert type(run._past.integrator) is held.HeldIntegrator
+    steps = np.diff(run["T"])[10:]
+    assert steps[1:] / steps[:-1] == pytest.approx(math.exp(-(0.3 * 4200 + 160) / (100 * 4200)), abs=1e-9)
+    run = simulate(tank, until=100, step=1, P=P, F=stepwise(0.3, {50: 0.2}))
+    assert type(run._past.integrator) is integrator.PlantIntegrator
 
 
 # Limits.
@@ -530,7 +587,7 @@ REFUSED = {
     "a signal that is text": (lambda: simulate(TANK, until=100, step=1, u="45"), "u: '45' is of type str"),
     "a short array": (lambda: simulate(TANK, until=100, step=1, u=[1, 2, 3]), "u has 3 values for 101 samples"),
     "NaN in an array": (lambda: simulate(TANK, until=2, step=1, u=[1, math.nan, 3]), "u is nan at t = 1"),
-    "NaN as a number": (lambda: simulate(TANK, LOOP, until=100, setpoint=math.nan), "setpoint: nan is of type float"),
+    "NaN as a number": (lambda: simulate(TANK, LOOP, until=100, setpoint=math.nan), "setpoint: nan is not a number"),
     "negative noise": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, noise=-1), "deviation is -1"),
     "half a stretch by hand": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, manual=[(0, 5)]), "manual has"),
     "another plant's run": (

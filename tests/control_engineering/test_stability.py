@@ -12,7 +12,8 @@ from scipy.optimize import brentq
 
 from draws import draws
 from loopbook import s
-from loopbook.deadtime import Loop, System
+from loopbook.deadtime import System
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.stability import (
     StabilityLimitError,

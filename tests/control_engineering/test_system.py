@@ -12,7 +12,8 @@ import sympy
 
 import loopbook as lb
 from loopbook import s, transfer
-from loopbook.deadtime import Loop, System, closed_loop
+from loopbook.deadtime import System, closed_loop
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.transfer import first_order
 
@@ -29,7 +30,7 @@ def test_systems_and_loops_can_be_sent_to_other_processes():
     for thing in (LOOP.servo, System(0), System(DELAY / (s + DELAY))):
         assert pickle.loads(pickle.dumps(thing)) == copy.deepcopy(thing) == thing
     again = copy.deepcopy(LOOP)
-    assert (again.servo, again.margins()) == (LOOP.servo, LOOP.margins())
+    assert (again, again.margins()) == (LOOP, LOOP.margins())
     with ProcessPoolExecutor(1) as pool:
         assert list(pool.map(overshoot_of, [LOOP])) == [overshoot_of(LOOP)]
 
@@ -54,7 +55,7 @@ def test_a_system_is_called_powered_and_compared():
 
 
 def test_the_four_sensitivities_are_what_their_names_say():
-    L, P, C = LOOP.open, LOOP.process, LOOP.controller
+    L, P, C = LOOP.open, LOOP.process, LOOP.controller.expr
     w = np.array([0.01, 0.1, 0.5, 2.0])
     at = {name: System(H).frequency(w) for name, H in (("L", L), ("P", P), ("C", C))}
     assert LOOP.S.frequency(w) == pytest.approx(1 / (1 + at["L"]))
@@ -70,6 +71,59 @@ def test_the_four_sensitivities_are_what_their_names_say():
     )
     with pytest.raises(ValueError, match="improper"):
         Loop(first_order(1, 1) / s, PID(1, 5, 1)).CS  # noqa: B018
+
+
+def test_a_loop_knows_its_controller():
+    assert LOOP.controller is LOOP._given[1]
+    assert repr(LOOP) == "Loop(2*exp(-4*s)/(5*s + 1), PID(Kp=2/5, Ti=5, Td=1, Tf=1/10))"
+    assert Loop(1 / s, 2).controller == System(2)
+    assert Loop(1 / s, 2 / (s + 1)).controller == System(2 / (s + 1))
+    improper = Loop(1 / s**2, 1 + s)
+    assert improper.controller.expr == s + 1
+    assert repr(improper) == "Loop(s**(-2), s + 1)"
+    assert repr(Loop(1 / s, PID(2), PID(1))) == "Loop(1/s, PID(Kp=2), PID(Kp=1))"
+
+
+def test_loops_are_equal_where_their_blocks_are():
+    same = Loop(2 * sympy.exp(-4 * s) / (1 + 5 * s), LOOP.controller.expr)
+    assert same == LOOP
+    assert hash(same) == hash(LOOP)
+    assert len({LOOP, same, Loop(LOOP.process, 1)}) == 2
+    assert Loop(1 / s, PID(2), PID(1)) != Loop(1 / s, PID(2))
+    assert LOOP.servo != LOOP
+
+
+def test_a_loop_answers_for_its_step_its_criteria_and_its_sensitivity():
+    assert LOOP.step(TIMES) == pytest.approx(LOOP.servo.step(TIMES))
+    assert LOOP.step(TIMES, mode="regulator") == pytest.approx(LOOP.regulator.step(TIMES))
+    assert LOOP.step()(3.0) == LOOP.step(3.0)
+    for mode in ("servo", "regulator"):
+        assert LOOP.ise(mode) == lb.ise(LOOP.process, LOOP.controller, mode)
+        assert LOOP.criteria(mode) == lb.criteria(LOOP, mode=mode)
+        assert pytest.approx(LOOP.ise(mode), rel=1e-8) == LOOP.criteria(mode).ISE
+    assert (lb.margins(LOOP.L), LOOP.Ms) == (LOOP.margins(), LOOP.margins().Ms)
+    assert Loop(DELAY / s, 2).Ms == math.inf
+    for ask in (LOOP.step, LOOP.criteria):
+        with pytest.raises(ValueError, match="the mode is 'load': expected one of servo, regulator"):
+            ask(mode="load") if ask == LOOP.criteria else ask(TIMES, mode="load")
+
+
+def test_python_control_closes_a_loop_around_a_system():
+    G, H = control.tf([2], [5, 1]), System(DELAY / (s + 1))
+    assert control.feedback(H, 1) == closed_loop(H)
+    assert control.feedback(H, G) == closed_loop(H, G)
+    assert control.feedback(H, G, 1) == H.feedback(G, sign=1) == H / (1 - H * G)
+    assert G * H == H * G == System(G) * H
+    assert H + control.ss(G) == G + H
+    assert System(G).feedback(H) == closed_loop(G, H)
+    with pytest.raises(ValueError, match="the sign is 2: expected -1 or 1"):
+        H.feedback(1, 2)
+
+
+def test_the_package_shows_its_public_names_only():
+    assert dir(lb) == sorted(lb.__all__)
+    assert all(hasattr(lb, name) for name in lb.__all__)
+    assert callable(lb.ise)
 
 
 def test_stability_of_a_loop_is_internal():

@@ -9,11 +9,12 @@ import pytest
 import sympy
 from sympy import Rational, exp
 
-from loopbook.deadtime import Loop, System
+from loopbook.deadtime import System
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.deadtime.pictures import bode_plot, nyquist_plot, step_plot
-from loopbook.figures import Picture, PlanePlot, TimePlot
+from loopbook.figures import Picture, PlanePlot, TimePlot, half_rule_plot, map_plot
 from loopbook.figures.style import look
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.quasipolynomials import read
 from pictures import in_inches, overlap
@@ -375,6 +376,32 @@ def test_a_jump_of_a_step_response_is_upright():
 def test_what_does_not_settle_is_drawn_to_some_end(H):
     times = step_plot(H).lines["$y(t)$"].get_xdata()
     assert 1 <= times[-1] <= 100
+
+
+# Axes of one's own.
+
+
+def test_pictures_are_drawn_into_axes_of_ones_own():
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(2, 4)
+    bode = LOOP.bode(ax=axes[:, 0], title="Bode")
+    assert bode.figure is figure
+    assert labelled(axes[0, 0], "").get_xdata()[0] == axes[1, 0].get_xlim()[0]
+    assert (axes[0, 0].get_title(loc="left"), axes[1, 0].get_xlabel()) == ("Bode", r"$\omega$ [rad/s]")
+    assert LOOP.nyquist(ax=axes[0, 1]).axes is axes[0, 1]
+    assert LOOP.servo.plot_step(ax=axes[1, 1]).lines["$y(t)$"].axes is axes[1, 1]
+    step = LOOP.plot_step(20, ax=axes[:, 2]).event(5, "here")
+    assert list(step.axes) == list(axes[:, 2])
+    assert axes[0, 2].get_xlim() == axes[1, 2].get_xlim() == (0, 20)
+    map_plot([1, 2], [1, 2], [[0, 2], [2, 4]], "x", "y", "poles", ax=axes[0, 3])
+    half_rule_plot({"a": 2, "b": 1}, ax=axes[1, 3])
+    assert all(each.has_data() for each in axes.flat)
+    assert bode._repr_mimebundle_() == ({"text/plain": repr(bode)}, {})  # pyplot shows the figure
+    assert bode.png()[:4] == b"\x89PNG"
+    with pytest.raises(ValueError, match="1 axes for 2 panels: expected as many"):
+        LOOP.bode(ax=axes[0, 0])
+    pyplot.close(figure)
 
 
 # python-control.

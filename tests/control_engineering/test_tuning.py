@@ -15,7 +15,7 @@ import contributing
 from draws import draws
 from loopbook import pid, s, tuning
 from loopbook.approximation import SOPDT, model_of
-from loopbook.ise import criteria
+from loopbook.integrals import criteria
 from loopbook.oscillation import oscillation_of_pole
 from loopbook.pid import PID
 from loopbook.stability import dominant_poles

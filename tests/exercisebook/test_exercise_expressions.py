@@ -15,7 +15,7 @@ from plainmath.expressions import s, t
 X = sympy.Symbol("x")
 H = expression(3 * sympy.exp(-2 * s) / (5 * s + 1))
 Y = time_function(1 - sympy.exp(-t / 5), until=25, what="the response")
-LATER = time_function(sympy.Heaviside(t - 3) * (1 - sympy.exp(-(t - 3) / 5)), until=25, what="the response")
+LATER = time_function(sympy.Heaviside(t - 3) * (1 - sympy.exp(-(t - 3) / 5)), until=25, what="the response", time="s")
 METRES = time_function(2 * (1 - sympy.exp(-t / 5)), until=25, unit="m", time="s", what="the level")
 BOX = expression(sympy.sympify("pi*r**2*h"), "the volume", unit="m³")
 pi_r2_h = sympy.pi * sympy.Symbol("r") ** 2 * sympy.Function("h")(t)
@@ -86,6 +86,10 @@ JUDGED = [
     (LATER, "1 - e^(-(t-3)/5) for t < 3, 0 after", WRONG, "read as Piecewise"),
     (LATER, "1 - e^(-(t-3)/5) for t > 3", UNJUDGED, "what is it before t = 3?"),
     (LATER, "0 for t < 3", UNJUDGED, "what is it after t = 3?"),
+    (LATER, "0 for t < 3, 1 - e^(-(t-3)/5) for t > 4", UNJUDGED, "what is it from t = 3 to 4?"),
+    (LATER, "0 for t < 0.05 min, 1 - e^(-(t-3)/5) for t > 0.05 min", RIGHT, "t < 3"),
+    (LATER, "0 for t < 3 min, 1 - e^(-(t-3)/5) for t > 3 min", MISTAKE, "t < 180"),
+    (Y, "0 for t < 0 s, 1 - e^(-t/5) otherwise", UNJUDGED, "which unit 0 s is in is not known"),
     (LATER, "1 for t < 3, stop after", UNJUDGED, "not a symbol"),
     (LATER, "for t < 3, for t > 3", UNJUDGED, ""),
     (LATER, "0 for t < 3, " * 9, UNJUDGED, ""),

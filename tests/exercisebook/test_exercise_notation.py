@@ -256,5 +256,7 @@ def test_a_list_in_a_text_has_its_parts(text, parts):
 @pytest.mark.parametrize("word", ["until", "before", "up to", "from", "after"])
 def test_a_piece_lasts_until_or_begins_when_its_words_say(word):
     sign = "<" if word in ("until", "before", "up to") else ">="
-    key, said = (Formula(text, "t") for text in (f"2*t for t {sign} 3, 6 otherwise", f"2t {word} 3 s, 6 otherwise"))
+    key, said = (
+        Formula(text, "t", "s") for text in (f"2*t for t {sign} 3, 6 otherwise", f"2t {word} 3 s, 6 otherwise")
+    )
     assert agree(key, said, points_for(key), within=0)

@@ -6,10 +6,10 @@ from exercisebook.forms import Desk
 from exercisebook.forms.controls import html as controls_of
 from exercisebook.forms.fields import field_of
 from exercisebook.forms.typeset import LONGEST, mathml
+from exercisebook.grammar import read
 from exercisebook.judging import judge
 from exercisebook.kinds import Expression, Number
 from exercisebook.latex import latex
-from exercisebook.reading import understood
 from exercisebook.response import Response
 from shelf import exercise
 from typed import Read
@@ -35,7 +35,7 @@ def test_each_formula_is_shown_as_it_is_read(subtests):
         "0 for t < 3, 2t for t > 3": r"\begin{cases} 0 & t \lt 3 \\ 2 t & \text{otherwise} \end{cases}",
     }.items():
         with subtests.test(typed):
-            assert latex(understood(typed, SYMBOLS)[1]) == shown
+            assert latex(read(typed, SYMBOLS).tree) == shown
             assert Read(mathml(typed, SYMBOLS)).all("math")
 
 

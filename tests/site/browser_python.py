@@ -22,7 +22,7 @@ PACKAGES = ["numpy", "scipy", "matplotlib", "pillow", "ipython", "sqlite3"]
 #: Those in pure Python, in the versions that are installed here, and ours in the wheel of a page.
 PURE = [
     "sympy", "mpmath", "pint", "flexcache", "flexparser", "platformdirs", "typing-extensions", "schemdraw", "control",
-    "latex2mathml", "markdown-it-py", "mdurl", "ipywidgets", "comm", "loopbook",
+    "lark", "latex2mathml", "markdown-it-py", "mdurl", "ipywidgets", "comm", "loopbook",
 ]  # fmt: skip
 PROGRAM = """
 import sys, logging, pathlib, zipfile

@@ -261,8 +261,8 @@ def test_formulas_in_a_table_are_set_and_code_is_left_alone():
 
 def test_what_a_section_uses_is_read_from_its_code():
     names = extension("functions_used").Names()
-    assert names.used("from loopbook import transfer, tuning as rules\nfrom loopbook.deadtime import Loop") == {}
+    assert names.used("from loopbook import transfer, tuning as rules\nfrom loopbook.loops import Loop") == {}
     used = names.used("loop = Loop(transfer.first_order(1, 2), rules.simc(x))")
-    assert set(used) == {"loopbook.deadtime.Loop", "loopbook.transfer.first_order", "loopbook.tuning.simc"}
+    assert set(used) == {"loopbook.loops.Loop", "loopbook.transfer.first_order", "loopbook.tuning.simc"}
     assert names.used("Loop = 3") == {}
     assert names.used("Loop") == {}

@@ -360,8 +360,9 @@ class TestInTheBrowser:
         assert re.match(r"ended after \d+ s: ", ask(page, answers={"p": ENDLESS}))
         assert ask(page) == json.loads(answer(json.dumps(ASKED)))
 
-        # nor does one that Python cannot survive end more than itself
-        assert "begins anew" in ask(page, exercise="4.1", answers={"F": "-" * 3900 + "s"})
+        # and one that is nested as deeply as can be is refused
+        refused, _ = ask(page, exercise="4.1", answers={"F": "-" * 3900 + "s"})["verdicts"]
+        assert "very long" in refused["says"]
         assert ask(page) == json.loads(answer(json.dumps(ASKED)))
 
         # what was not visited says so, and leads to what was

@@ -14,7 +14,7 @@ from loopbook import s, t
 from loopbook.approximation import SOPDT, pade, taylor, zero_rule
 from loopbook.deadtime import System
 from loopbook.identification import relay_experiment
-from loopbook.ise import ise, pi_first_order
+from loopbook.integrals import ise, pi_first_order
 from loopbook.latex import latex
 from loopbook.stability import margins
 from loopbook.synthesis import IMC_TABLE, imc

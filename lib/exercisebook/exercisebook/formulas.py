@@ -36,6 +36,7 @@ class Formula:
         given: text, in Python's notation or as people write formulas; a number; an expression of SymPy; or something
             that has one as its ``expr``, or is a linear system with one input and one output.
         symbols: the names that may occur.
+        time: the unit of t, in which times with a unit are read.
     Attributes:
         text: the formula in Python's notation, where ``^`` is a power too.
         remark: how it was read, where it was given in another notation.
@@ -47,9 +48,9 @@ class Formula:
     array(2.+0.j)
     """
 
-    def __init__(self, given: object, symbols: str | Iterable[str] = ()):
+    def __init__(self, given: object, symbols: str | Iterable[str] = (), time: str = ""):
         self.symbols = symbols.split() if isinstance(symbols, str) else list(symbols)
-        found = read(spelled(given), self.symbols)
+        found = read(spelled(given), self.symbols, time)
         self.tree, self.text = found.tree, found.text
         self.remark = f"read as {found.text}" if found.is_other else ""
         self._kept: list[tuple[Mapping[str, np.ndarray], np.ndarray, np.ndarray, np.ndarray]] = []

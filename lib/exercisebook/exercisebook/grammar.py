@@ -29,16 +29,17 @@ ONE_VALUE = (
 SEVERAL_VALUES = ("Min", "Max", "min", "max", "Heaviside", "Piecewise", "where")
 CONSTANTS = {"pi": np.pi, "E": np.e, "e": np.e, "I": 1j, "j": 1j, "i": 1j}
 #: Names of steps, which are functions where the symbol is the time.
-STEPS = ("Heaviside", "heaviside", "step", "unitstep", "u", "H", "sigma", "theta", "1")
+STEPS = ("Heaviside", "heaviside", "step", "unitstep", "u", "H", "sigma", "theta", "epsilon", "1")
 #: Names by other names: functions, and letters of LaTeX.
 OTHER_NAMES = {
     "√": "sqrt", "Sqrt": "sqrt", "root": "sqrt", "Exp": "exp", "Ln": "ln", "Log": "log", "Sin": "sin", "Cos": "cos",
-    "dfrac": "frac", "tfrac": "frac", "infty": "oo",
+    "dfrac": "frac", "tfrac": "frac", "infty": "oo", "log_10": "log10", "lg": "log10",
 }  # fmt: skip
 #: Letters that stand for the same in different books, {one: the other} in both directions, as `bare` writes them.
 SAME_LETTERS: dict[str, str] = {}
-#: Units of time, which the time of a piece may have.
-TIMES = ("s", "min", "h", "sec", "seconds", "minutes", "hours")
+#: Units of time, which the time of a piece may have, in s.
+TIMES = {"ms": 0.001, "s": 1, "min": 60, "h": 3600, "d": 86400}
+TIMES |= {"sec": 1, "second": 1, "seconds": 1, "minute": 60, "minutes": 60, "hour": 3600, "hours": 3600}
 LONGEST, LONGEST_NAME, MOST_READINGS, MOST_NODES, MOST_PIECES = 4000, 40, 500, 2000, 6
 
 _OPERATORS = {"+": ast.Add, "-": ast.Sub, "*": ast.Mult, "/": ast.Div, "&": ast.BitAnd, "|": ast.BitOr}
@@ -49,7 +50,9 @@ _PARTS = {"½": (1, 2), "¼": (1, 4), "¾": (3, 4), "⅓": (1, 3), "⅔": (2, 3)
 #: What Python makes of the LaTeX in a text that is not raw: of ``\\tau`` a tab and "au".
 _ESCAPED = re.compile("\t(?=au|heta|imes|ext|frac)|\f(?=rac)|\r(?=ight|m)|\b(?=eta|ig)|\v(?=ar)|\a(?=lpha)")
 #: A word of LaTeX around a name, which is the name.
-UPRIGHT = re.compile(r"\\(?:mathrm|mathbf|mathit|text|operatorname|rm) *\{ *(\w+) *\}")
+UPRIGHT = re.compile(r"\\(?:mathrm|mathbf|mathit|text|operatorname|rm) *\{? *(\w+) *\}?")
+#: What a comma is that is a decimal one, and so between no two values.
+DECIMAL = "‚"
 _LETTERS = {"\t": "t", "\f": "f", "\r": "r", "\b": "b", "\v": "v", "\a": "a"}
 
 
@@ -87,21 +90,17 @@ def in_python(tree: ast.expr) -> str:
 
 
 @functools.cache
-def _parser(commas):
-    """The parser; numbers have decimal commas for one, and for the other a comma is between two values."""
-    numbers = r"\d[\d.,]*\d|\d\.?|[.,]\d+" if commas else r"\d+\.?\d*(?:\.\d+)*|\.\d+"
-    numbers = rf"\d{{1,3}}(?:[ ']\d{{3}})+(?![\d ']*\d)(?:[.,]\d+)?|{numbers}"
+def parser() -> lark.Lark:
+    """Return the parser, which takes its time to be built; a decimal comma is a `DECIMAL` for it."""
     grammar = resources.files(__package__).joinpath("formula.lark").read_text(encoding="utf-8")
-    return lark.Lark(
-        grammar.replace("NUMBERS", numbers),
-        parser="lalr",
-        propagate_positions=True,
-        lexer_callbacks={"UNIT": lambda unit: unit.update(type="NAME")},
-    )
+    names = {"UNIT": lambda unit: unit.update(type="NAME")}
+    return lark.Lark(grammar, parser="lalr", propagate_positions=True, lexer_callbacks=names)
 
 
-def read(text: str, symbols: Collection[str] | None) -> Read:
+def read(text: str, symbols: Collection[str] | None, time: str = "") -> Read:
     """Return a formula in some symbols; of any symbols where these are None.
+
+    A time in the text may have a unit, as in "0 for t < 3 min", where the unit of t is known.
 
     Raises Unreadable in a sentence, and Doubtful where the text may mean several things.
 
@@ -113,12 +112,12 @@ def read(text: str, symbols: Collection[str] | None) -> Read:
     """
     if not text.strip():
         raise Unreadable(f"the text is empty: {_expected(symbols)}")
-    return _read(text, None if symbols is None else tuple(symbols))
+    return _read(text, None if symbols is None else tuple(symbols), time)
 
 
 @functools.lru_cache(maxsize=500)  # mistakes and other numbers have the same formula
-def _read(text, symbols):
-    return in_either(text, lambda line, commas: Reader(line, symbols, commas).read())
+def _read(text, symbols, time):
+    return in_either(text, lambda line, commas: Reader(line, symbols, commas, time).read())
 
 
 def in_either(text: str, reading: Callable[[str, bool], Any]) -> Any:
@@ -166,7 +165,8 @@ class Part(NamedTuple):
 class Reader:
     """Of one text."""
 
-    def __init__(self, text: str, symbols: Collection[str] | None, commas: bool):
+    def __init__(self, text: str, symbols: Collection[str] | None, commas: bool, time: str = ""):
+        self.time = time
         self.text, self.symbols, self.commas = text, symbols, commas
         self.known = set(symbols or ())
         self.constants = CONSTANTS.keys() - self.known
@@ -176,7 +176,7 @@ class Reader:
     def parsed(self) -> lark.Tree:
         """The parse tree of the text."""
         try:
-            found = _parser(self.commas).parse(self.text)
+            found = parser().parse(re.sub(r"(?<=\d),(?=\d)", DECIMAL, self.text) if self.commas else self.text)
         except lark.UnexpectedInput as problem:
             raise NotRead(self._unexpected(problem)) from None
         self._clear_commas(found)
@@ -204,9 +204,9 @@ class Reader:
 
     def _clear_commas(self, parsed):
         """Raise Doubtful for 1,500, which few write with zeros at the end, unless another comma is a decimal one."""
-        numbers = [leaf for leaf in leaves(parsed) if leaf.type == "NUMBER" and re.fullmatch(r"\d+,\d+", leaf)]
-        if numbers and all(re.fullmatch("(?!0+,)\\d{1,3},[0-9]00", number) for number in numbers):
-            whole, part = numbers[0].split(",")
+        numbers = [leaf for leaf in leaves(parsed) if leaf.type == "NUMBER" and re.fullmatch(rf"\d+{DECIMAL}\d+", leaf)]
+        if numbers and all(re.fullmatch(rf"(?!0+{DECIMAL})\d{{1,3}}{DECIMAL}[0-9]00", number) for number in numbers):
+            whole, part = numbers[0].split(DECIMAL)
             raise Doubtful(f"{whole},{part} may be {whole}.{part} or {whole}{part}: write the decimal comma as a point")
 
     # A formula, perhaps in pieces.
@@ -264,6 +264,9 @@ class Reader:
         if not rest and first > 0:
             told = f"0 for t < {first:g}, ... for t > {first:g}"
             raise Unreadable(f"what is it before t = {first:g}? Add it, as in: {told}")
+        for (_, end, *_), (begin, *_) in itertools.pairwise(pieces):
+            if not rest and begin > end:
+                raise Unreadable(f"what is it from t = {end:g} to {begin:g}? Add it, as in: ... for t > {end:g}")
         if not rest and last < math.inf:
             raise Unreadable(f"what is it after t = {last:g}? Add it, as in: ... for t > {last:g}")
         pairs = [(value, times) for _, _, value, times in pieces]
@@ -287,13 +290,17 @@ class Reader:
                 return self._term(parsed)
             case "signed":
                 sign, operand = parsed.children
-                return self.tree(operand) if sign == "+" else negative(self.tree(operand))
+                return self.tree(operand) if _sign(sign) == "+" else negative(self.tree(operand))
         return product(self._row(parsed.children))
 
     def _time(self, parsed):
-        """A side of a comparison; the unit of a time is not looked at: t < 3 s."""
-        is_time = len(parsed.children) == 2 and is_leaf(parsed.children[0], "NUMBER") and parsed.children[1] in TIMES
-        return ast.Constant(_value(parsed.children[0])) if is_time else self.tree(parsed)
+        """A side of a comparison, which may be a time with its unit: t < 3 s."""
+        number, *unit = parsed.children
+        if parsed.data != "row" or len(unit) != 1 or not is_leaf(number, "NUMBER") or unit[0] not in TIMES:
+            return self.tree(parsed)
+        if not self.time:
+            raise Unreadable(f"which unit {self._quoted(parsed)} is in is not known here: expected the number alone")
+        return ast.Constant(_value(number) * TIMES[unit[0]] / TIMES[self.time])
 
     def _compared(self, children):
         """One comparison, or of three sides two."""
@@ -454,7 +461,7 @@ class Reader:
             return name
         name = UPRIGHT.sub(r"\1", name)
         name = re.sub("[₀-₉]+", lambda low: "_" + low[0].translate(_LOWERED), name)
-        name = re.sub(r"_\{ *(\w+) *\}", r"_\1", name.removeprefix("\\")).removeprefix("var")
+        name = re.sub(r"_\{? *(\w+) *\}?", r"_\1", name.removeprefix("\\")).removeprefix("var")
         if "Ͱ" <= name[0] <= "Ͽ" and name[0] not in "".join(self.known):
             name = unicodedata.name(name[0]).split()[-1].lower() + name[1:]
         return OTHER_NAMES.get(name, name) if name not in self.known else name
@@ -736,7 +743,7 @@ def _pairs(children):
 def _sign(token):
     """The sign of an operation, as Python writes it."""
     if token.type == "SIGN":
-        return "+" if token == "+" else "-"
+        return "+" if token in ("+", "plus") else "-"
     return "/" if token in ("/", "÷", "∕", "⁄", "\\div", "per", ":") else str(token) if token in ("&", "|") else "*"
 
 
@@ -769,6 +776,7 @@ def negative(tree: ast.expr) -> ast.expr:
 
 def _value(text):
     """A number, with a decimal comma or separators of thousands where these are clear."""
+    text = text.replace(DECIMAL, ",")
     if re.fullmatch(r"\d{1,3}(?:,\d{3})+\.\d+|\d{1,3}(?:,\d{3}){2,}", text):
         text = text.replace(",", "")
     elif re.fullmatch(r"\d{1,3}(?:\.\d{3})+,\d+|\d{1,3}(?:\.\d{3}){2,}", text):

@@ -187,7 +187,7 @@ class _Quantities(Reader):
     def _unit(self, token):
         """The unit that a name is; empty for another name."""
         name = UPRIGHT.sub(r"\1", token)
-        name = "%" if name == "\\%" else re.sub(r"^\^ ?\{? ?\\circ ?\}?", "°", name)
+        name = "%" if name == "\\%" else re.sub(r"^\^ ?\{? ?\\circ ?\}? ?", "°", name)
         if self._spelled(token) in self.known | self.constants or _is_greek(name):
             return ""
         name = re.sub(r"^bar ?(?:\((?:g|a|abs)\)|[ag])$", "bar", name, flags=re.IGNORECASE)

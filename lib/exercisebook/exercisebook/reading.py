@@ -78,6 +78,7 @@ def alone(given: object) -> Any:
 
 #: A name before a list or an array, and the call that makes an array.
 _NAMED_LIST = re.compile(r"^[^\W\d]\w* ?= ?(?=\[|(?:\w+\.)?(?:Matrix|array)\()")
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?(?:[-+](?:\d+\.?\d*|\.\d+)j)?"
 _ARRAY = re.compile(r"(?:\w+\.)?(?:Matrix|array)\((.*)\)")
 
 
@@ -92,13 +93,21 @@ def listed_in(text: str) -> list[str]:
     >>> listed_in("[[1, 2], [3, 4]]"), listed_in("1, 2 and 3")
     (['[1, 2]', '[3, 4]'], ['1', '2', '3'])
     """
-    text = _NAMED_LIST.sub("", " ".join(text.split()))
+    text = re.sub(r"\\[,;:! ]|\\q?quad|~|\$|\\(?:left|right)(?![a-z])", " ", text.strip())
+    text = re.sub(r"\\text\{ *(and|or) *\}", r" \1 ", text).replace("\\{", "{").replace("\\}", "}")
+    text = _NAMED_LIST.sub("", " ".join(re.sub(r" *[,;]? *\n", "; ", text).split()))
     if array := _ARRAY.fullmatch(text):
         text = array[1]
     if not text:
         return [text]
     inside = _unwrapped(text)
-    for separator in (r";|\n", r",? (?:and|und|&) |, |,(?=[-−+±])", r"," if inside != text else r",(?=\[)"):
+    in_spaces = inside != text and re.fullmatch(_NUMBER + rf"(?: {_NUMBER})+", inside)  # an array as it is printed
+    for separator in (
+        r";",
+        r",? (?:(?:and|und|&) |or (?=[a-z]\w* ?=))|, |,(?=[-−+±])",
+        r"," if inside != text else r",(?=\[)",
+        " " if in_spaces else r"(?!)",
+    ):
         depths = _depths(inside)
         places = [found for found in re.finditer(separator, inside) if not depths[found.start()]]
         if places:

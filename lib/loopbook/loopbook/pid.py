@@ -8,7 +8,7 @@ import math
 import numbers
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import sympy
 
@@ -21,6 +21,7 @@ from plainmath.validation import (
     exact_not_negative,
     exact_positive,
     exact_real,
+    known_arguments,
     limits,
     not_negative,
     number,
@@ -36,7 +37,7 @@ FORMS = ("parallel", "serial")
 HOLD = math.nan
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class PID:
     """Settings of a PID controller: exact numbers or symbols.
 
@@ -62,19 +63,14 @@ class PID:
     Tf: sympy.Expr = sympy.S.Zero
     form: str = "parallel"
 
-    if TYPE_CHECKING:  # numbers of any kind are given, and kept as exact ones
-
-        def __init__(
-            self, Kp: Number, Ti: Number = sympy.oo, Td: Number = 0, Tf: Number = 0, form: str = "parallel"
-        ): ...
-
-    def __post_init__(self) -> None:
-        for name in ("Kp", "Ti", "Td", "Tf"):
+    @known_arguments
+    def __init__(self, Kp: Number, Ti: Number = sympy.oo, Td: Number = 0, Tf: Number = 0, form: str = "parallel"):
+        for name, value in (("Kp", Kp), ("Ti", Ti), ("Td", Td), ("Tf", Tf)):
             check = exact_real if name == "Kp" else exact_not_negative
-            object.__setattr__(self, name, check(name, getattr(self, name), infinite=name == "Ti"))
+            object.__setattr__(self, name, check(name, value, infinite=name == "Ti"))
         if self.Ti == 0:
             raise ValueError("Ti is 0: expected a positive integral time, or oo for a controller without integral term")
-        one_of("form", self.form, FORMS)
+        object.__setattr__(self, "form", one_of("form", form, FORMS))
 
     @functools.cached_property
     def expr(self) -> sympy.Expr:

@@ -26,7 +26,7 @@ from loopbook.laplace import (
 )
 from loopbook.types import Number, TransferFunctionLike
 from plainmath.expressions import exact, function_of, s, t
-from plainmath.validation import exact_not_negative, number
+from plainmath.validation import exact_not_negative, exact_real, known_arguments, number
 
 __all__ = [
     "characteristic_polynomial", "dead_time", "double_integrator", "feedback", "first_order", "impulse_response",
@@ -39,6 +39,7 @@ __all__ = [
 # ------------------------------------------------------------------------------------------------ standard models
 
 
+@known_arguments
 def dead_time(delay: Number) -> sympy.Expr:
     """Return the transfer function of a pure dead time, ``exp(-delay*s)``. (Haugen, equation 6.32)
 
@@ -50,15 +51,17 @@ def dead_time(delay: Number) -> sympy.Expr:
     return sympy.exp(-exact_not_negative("delay", delay) * s)
 
 
+@known_arguments
 def integrator(K: Number, delay: Number = 0) -> sympy.Expr:
     """Return K/s, with the dead time `delay` if there is one. (Haugen, equation 6.4)
 
     >>> integrator(2)
     2/s
     """
-    return exact(K) / s * dead_time(delay)
+    return exact_real("K", K) / s * dead_time(delay)
 
 
+@known_arguments
 def first_order(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
     """Return ``K/(T*s + 1)``, a lag (time constant system) with gain K and dead time `delay`. (Haugen, equation 6.13)
 
@@ -71,9 +74,10 @@ def first_order(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
     >>> first_order(2, 5, delay=1)
     2*exp(-s)/(5*s + 1)
     """
-    return exact(K) / (exact_not_negative("T", T) * s + 1) * dead_time(delay)
+    return exact_real("K", K) / (exact_not_negative("T", T) * s + 1) * dead_time(delay)
 
 
+@known_arguments
 def second_order(K: Number, T1: Number, T2: Number, delay: Number = 0) -> sympy.Expr:
     """Return ``K/((T1*s + 1)*(T2*s + 1))``, two lags in series. (Haugen, equation 6.33)
 
@@ -83,6 +87,7 @@ def second_order(K: Number, T1: Number, T2: Number, delay: Number = 0) -> sympy.
     return first_order(K, T1, delay) / (exact_not_negative("T2", T2) * s + 1)
 
 
+@known_arguments
 def integrator_with_lag(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
     """Return ``K/(s*(T*s + 1))``, an integrator behind a lag.
 
@@ -92,6 +97,7 @@ def integrator_with_lag(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
     return first_order(K, T, delay) / s
 
 
+@known_arguments
 def double_integrator(K: Number, delay: Number = 0) -> sympy.Expr:
     """Return ``K/s**2``.
 

@@ -296,7 +296,9 @@ def exact(value: Number | complex) -> sympy.Expr:
         expression = sympy.sympify(value)
     except (sympy.SympifyError, TypeError, AttributeError):
         raise _no_expression(value) from None
-    if not isinstance(expression, sympy.Expr) or expression.has(sympy.nan) or getattr(expression, "is_Matrix", False):
+    if isinstance(expression, sympy.Expr) and expression.has(sympy.nan):
+        raise ValueError(f"{value!r} is not a number: expected a number or an expression")
+    if not isinstance(expression, sympy.Expr) or getattr(expression, "is_Matrix", False):
         raise _no_expression(value)
     if expression.is_Float:
         return _meant(expression)

@@ -10,10 +10,12 @@ that is not known.
 from __future__ import annotations
 
 import difflib
+import functools
+import inspect
 import math
 import operator
 from collections.abc import Callable, Collection, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
 import sympy
@@ -27,10 +29,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "did_you_mean", "exact_in_range", "exact_nonzero", "exact_not_negative", "exact_positive", "exact_real",
-    "increasing", "is_number", "limits", "not_negative", "number", "one_of", "positive", "positive_numbers",
-    "real_numbers", "times_from_zero", "whole",
+    "increasing", "is_number", "known_arguments", "limits", "not_negative", "number", "one_of", "positive",
+    "positive_numbers", "real_numbers", "times_from_zero", "whole",
 ]  # fmt: skip
 
+P = ParamSpec("P")
+R = TypeVar("R")
 A_FINITE_NUMBER = "a finite real number"
 A_POSITIVE_NUMBER = "a positive number"
 NOT_NEGATIVE = "a number that is not negative"
@@ -314,6 +318,28 @@ def did_you_mean(name: object, known: Iterable[object], otherwise: str | None = 
     if otherwise is not None:
         return otherwise
     return _listed(names) if names else "there are none"
+
+
+def known_arguments(function: Callable[P, R]) -> Callable[P, R]:
+    """Return a function that says which arguments it has where it is called with the name of another one.
+
+    >>> @known_arguments
+    ... def lag(K, T, delay=0): ...
+    >>> lag(2, 5, theta=4)
+    Traceback (most recent call last):
+    TypeError: lag has no argument 'theta': expected one of K, T, delay
+    """
+    names = [name for name in inspect.signature(function).parameters if name != "self"]
+
+    @functools.wraps(function)
+    def called(*args: P.args, **options: P.kwargs) -> R:
+        if options.keys() - names:
+            unknown = next(name for name in options if name not in names)
+            whose = function.__qualname__.removesuffix(".__init__")
+            raise TypeError(f"{whose} has no argument {unknown!r}: {did_you_mean(unknown, names)}")
+        return function(*args, **options)
+
+    return called
 
 
 def _listed(names):

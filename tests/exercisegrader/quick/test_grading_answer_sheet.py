@@ -83,7 +83,7 @@ def asked():
         ({"T": lambda t: t}, "? T: a function cannot be handed in"),
         ({"H": "K*exp(-2*s)/(T*s + 1)"}, "· H: K*exp(-2*s)/(T*s + 1), an expression in K, T and s"),
         ({"H": 2 / (s + X)}, "· H: 2/(s + x), an expression in s and x"),
-        ({"H": "y(t)*K_p/(s + 1)"}, "· H: y(t)*K_p/(s + 1), an expression in K_p, s and y"),
+        ({"H": "y(t)*K_p/(s + 1)"}, "· H: y*K_p/(s + 1), an expression in K_p, s and y"),
         ({"H": "K(s + 1)"}, "· H: K*(s + 1), an expression in K and s, read as K*(s + 1)"),
         ({"k": 2}, "? k: this is not asked here: did you mean 'K'?"),
         ({"self": 2, "exercise": 1}, "? self: this is not asked here"),

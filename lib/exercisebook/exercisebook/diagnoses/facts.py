@@ -85,10 +85,10 @@ def constant(kind: Expression, answer: Any, background: Background) -> Finding |
     with np.errstate(all="ignore"):
         key, found = _values(kind, answer)
         known = np.isfinite(key) & np.isfinite(found) & (key != 0)
-        if np.sum(known) < 5:
+        if np.sum(known) < 5 or np.any(found[np.isfinite(key) & (key == 0)]):  # it has begun too early, or not ended
             return None
         ratio, difference = found[known] / key[known], found[known] - key[known]
-    if np.ptp(ratio.real) + np.ptp(ratio.imag) < 1e-6 * np.abs(ratio[0]):
+    if np.ptp(ratio.real) + np.ptp(ratio.imag) < 1e-6 * np.abs(ratio[0]) and abs(ratio[0] - 1) > 1e-6:
         factor = float(ratio[0].real)
         named = _factor_named(factor, background)
         return Finding(f"it is right but for a constant factor{named}; everything else in it is right")

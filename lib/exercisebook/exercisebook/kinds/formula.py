@@ -141,7 +141,7 @@ class Expression(Kind):
     def _formula(self, given, symbols):
         """The formula, where a text may end in its unit or have units behind its numbers, and a remark."""
         try:
-            formula = Formula(given, symbols)
+            formula = Formula(given, symbols, self.time)
             return formula, formula.remark
         except Unreadable as problem:
             if not isinstance(given, str):
@@ -158,7 +158,7 @@ class Expression(Kind):
 
     def _of_quantities(self, given, symbols, problem):
         """A formula of numbers with units, in the asked one; raises the problem that it is without units."""
-        if not self.unit or not {*symbols} <= {"t"}:
+        if not (self.unit or self.time) or not {*symbols} <= {"t"}:
             raise problem
         try:
             *_, quantity = quantities(given, symbols)

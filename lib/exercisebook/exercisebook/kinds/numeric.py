@@ -32,11 +32,12 @@ from exercisebook.reading import alone, answered, in_a_row, listed_in, members
 #: What may be beside a number, on either side, and says nothing of its size.
 _BEFORE_IT = re.compile(
     r"^(?:.*(?:,|;| ) ?(?:so|thus|i\.e\.|that is) (?=\S*\d))?"
-    r"(?:(?:at least|at most|at|after|up to|times|only|exactly|(?:falls |rises )?by|"
+    r"(?:(?:(?:the )?[a-z_]+(?: [a-z]+)? is|at least|at most|at|after|up to|times|only|exactly|(?:falls |rises )?by|"
     r"(?:by )?(?:a )?factor(?: of)?|is|it is|magnitude|size) |"
     r"(?:[^\W\d]\w* ?)?(?:[<>≥≤]=?(?![<>≥≤=])|\\[lg]eq?\b) ?){0,2}",
     re.IGNORECASE,
 )
+_BOUND = re.compile(r"at (?:least|most)|up to|[<>≥≤]|\\[lg]e", re.IGNORECASE)
 _BEHIND_IT = re.compile(
     r" too (?:low|high|large|small|much|little)\.?$|(?<=[%\w]) of (?:the |its |full )*[a-z ]+$"
     r"|(?<=[\d)]) times(?: (?:larger|bigger|greater|higher|longer|faster|more|as (?:large|much|big|high|long|fast)))?$"
@@ -217,7 +218,10 @@ class Numbers(Kind):
 
     def near_each(self, answer: np.ndarray, key: np.ndarray) -> np.ndarray:
         """Which numbers are within the tolerance."""
-        return np.abs(answer - key) <= _allowed(key, self.within, 1e-12)
+        allowed = _allowed(key, self.within, 1e-12)
+        if self.within <= ROUNDED:  # zero is zero, unless it is measured
+            allowed = np.where(key == 0, NOTHING * np.max(np.abs(key), initial=0.0), allowed)
+        return np.abs(answer - key) <= allowed
 
     def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
         """Wrong sign, another unit, rows for columns, the order turned."""
@@ -404,7 +408,12 @@ def _each_pole(rows):
         if not isinstance(row, str):
             found.append(row)
             continue
-        row, times = _NAMES.sub("", " ".join(row.split())).rstrip("."), 1
+        row = " ".join(row.split()).rstrip(".")
+        named, row = row, _NAMES.sub("", row)
+        # s_1,2 = -1 and s_1 = s_2 = -1 are two, but of a pair each stands for one
+        times = (
+            2 if row != named and not re.search(r"[ij]", row) else max(1, len(re.findall(r"[a-z]_?\{?\d\}? ?=", row)))
+        )
         if found and row.lower() in _TIMES:  # -2, twice
             found += found[-1:] * (_TIMES[row.lower()] - 1)
             continue
@@ -471,7 +480,9 @@ def one_number(given: object, unit: str, expected: str) -> tuple[complex, str]:
 
 
 def _number_of_text(text, unit, expected):
-    line = _BEHIND_IT.sub("", _BEFORE_IT.sub("", " ".join(text.split()), count=1))
+    line = _BEHIND_IT.sub("", " ".join(text.split()))
+    before = _BEFORE_IT.match(line)[0]
+    line = line[len(before) :]
     try:
         found = [_in_asked(one, unit, expected) for one in quantities(line)]
     except Doubtful as doubt:
@@ -479,6 +490,8 @@ def _number_of_text(text, unit, expected):
     except NotRead:
         raise Unreadable(f"{shortened(text, 40)!r} is a text that is not a number: expected {expected}") from None
     value, remark = found[-1]
+    if _BOUND.search(before):  # which is no value
+        remark = f"read as {in_digits(value)} {unit}".strip()
     parts = (1, 100) if unit == "%" else (1,)  # 0.25 = 25 %
     for one, _ in found[:-1]:
         if not any(abs(k * one - value) <= ROUNDED * (abs(value) or 1) for k in parts):

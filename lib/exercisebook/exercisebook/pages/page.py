@@ -427,8 +427,11 @@ def beside(file: Path) -> dict[str, Callable[..., Any]]:
 
 
 def _functions_of(code):
-    if not code.exists():
-        return {}
+    return _functions_at(code, code.stat().st_mtime_ns) if code.exists() else {}
+
+
+@functools.lru_cache(maxsize=64)  # all pages of a chapter share one file
+def _functions_at(code, _changed):
     specification = importlib.util.spec_from_file_location(f"page_{code.stem}", code)
     assert specification
     assert specification.loader

@@ -12,11 +12,12 @@ from loopbook.laplace import evaluate
 #: The functions by the module that they are in. Each is imported when a formula calls it.
 _BY_MODULE = {
     "loopbook.approximation": "half_rule pade zero_rule",
-    "loopbook.deadtime": "Loop System",
+    "loopbook.deadtime": "System",
     "loopbook.identification": "fit",
-    "loopbook.ise": "ise pi_first_order",
+    "loopbook.integrals": "ise pi_first_order",
     "loopbook.instruments": "decode",
     "loopbook.laplace": "evaluate final_value initial_value inverse transform",
+    "loopbook.loops": "Loop",
     "loopbook.oscillation": "oscillation",
     "loopbook.pid": "PID",
     "loopbook.stability": "delay_margin is_closed_loop_stable margins robust_in_window robustness_pi_first_order "

@@ -14,8 +14,8 @@ def rehearse() -> None:
     import scipy.optimize
     import scipy.signal
 
-    from loopbook.deadtime import Loop
     from loopbook.exercises import exercise
+    from loopbook.loops import Loop
     from loopbook.pid import PID
     from loopbook.transfer import first_order
     from loopbook.tuning import simc

@@ -17,7 +17,7 @@ from loopbook.figures.picture import titled
 from loopbook.figures.style import GUIDE, LEVEL, WIDTH, ZERO, look, styled
 from loopbook.quasipolynomials import DelayFraction, read
 from plainmath.tables import plain_words
-from plainmath.validation import positive, real_numbers
+from plainmath.validation import known_arguments, positive, real_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from loopbook.deadtime.step_info import StepInfo
+    from loopbook.figures.canvas import OwnAxes
     from loopbook.stability import Margins
 
 __all__ = ["bode_plot", "nyquist_plot", "step_plot"]
@@ -41,6 +42,7 @@ NEAR = 1.6  # otherwise the part of it below this
 # ------------------------------------------------------------------------------------------------ Bode
 
 
+@known_arguments
 def bode_plot(
     H: object,
     omega: ArrayLike | None = None,
@@ -48,6 +50,7 @@ def bode_plot(
     title: str | None = None,
     unit: str = "s",
     db: bool = False,
+    ax: OwnAxes = None,
 ) -> Picture:
     """Plot magnitude and phase of a frequency response against frequency, with exact dead time.
 
@@ -63,6 +66,7 @@ def bode_plot(
         title: written above the plot.
         unit: of time, as the axis names it.
         db: magnitudes in decibels.
+        ax: two axes of matplotlib to draw into, for magnitude and phase, in place of a new figure.
     Raises:
         ValueError: for frequencies that are not positive, H = 0, or margins with several systems.
 
@@ -82,7 +86,7 @@ def bode_plot(
         return 20 * np.log10(abs(values)) if db else abs(values)
 
     with styled():
-        figure, (above, below) = canvas.panels([2.25, 2.25])
+        figure, (above, below) = canvas.panels([2.25, 2.25], ax)
         for place, (label, curve) in enumerate(curves.items()):
             with np.errstate(divide="ignore"):
                 above.plot(curve.omega, size(curve.values), label=label, **look(place))
@@ -102,7 +106,7 @@ def bode_plot(
         below.set_ylabel("phase [deg]")
         below.set_xlabel(rf"$\omega$ [rad/{unit}]")
         above.set_title(title or "")
-        figure.align_ylabels()
+        figure.align_ylabels([above, below])
         if len(curves) > 1:
             free_legend(above)
         if margins is not None:
@@ -216,12 +220,14 @@ def _degrees(axes: Axes, low: float, high: float) -> None:
 # ------------------------------------------------------------------------------------------------ Nyquist
 
 
+@known_arguments
 def nyquist_plot(
     L: object,
     omega: ArrayLike | None = None,
     margins: Margins | None = None,
     title: str | None = None,
     unit: str = "s",
+    ax: OwnAxes = None,
 ) -> PlanePlot:
     """Plot an open loop L(j omega) in the complex plane, with the point -1, the unit circle and the margins.
 
@@ -236,6 +242,7 @@ def nyquist_plot(
             axis, the phase margin as an arc, and Ms by the circle around -1 that the curve touches.
         title: written above the plot.
         unit: of time, for the delay margin.
+        ax: axes of matplotlib to draw into, in place of a new figure.
     Returns:
         A `PlanePlot`, to which areas, points and words can be added.
     Raises:
@@ -258,7 +265,7 @@ def nyquist_plot(
         curves[label] = frequency_curve(fraction, low, high, _coarse)
     (left, right), (bottom, top) = _window(curves.values(), margins)
     with styled():
-        figure, (axes,) = canvas.panels([(WIDTH - canvas.LEFT - canvas.RIGHT) * (top - bottom) / (right - left)])
+        _, (axes,) = canvas.panels([(WIDTH - canvas.LEFT - canvas.RIGHT) * (top - bottom) / (right - left)], ax)
         axes.axhline(0, **ZERO)
         axes.axvline(0, **ZERO)
         circle = np.exp(1j * np.linspace(0, 2 * math.pi, 361))
@@ -283,8 +290,7 @@ def nyquist_plot(
         axes.set_title(title or "")
         legend_below(axes)
     names = f"{', '.join(map(plain_words, curves))}: " if len(curves) > 1 else ""
-    plot = PlanePlot(figure, _alt(title, f"{names}imaginary part against real part", margins, with_sensitivity=True))
-    return plot
+    return PlanePlot(axes, _alt(title, f"{names}imaginary part against real part", margins, with_sensitivity=True))
 
 
 def _coarse(a, b):
@@ -375,6 +381,7 @@ def _nyquist_margins(axes, L, margins, unit) -> None:
 # ------------------------------------------------------------------------------------------------ step responses
 
 
+@known_arguments
 def step_plot(
     H: object,
     end: float | None = None,
@@ -383,6 +390,7 @@ def step_plot(
     unit: str = "s",
     settling: float = 0.02,
     rise: Sequence[float] = (0.1, 0.9),
+    ax: OwnAxes = None,
 ) -> TimePlot:
     """Plot the response to a unit step: the output of a system, or y and u of a loop after a step of its setpoint.
 
@@ -393,6 +401,7 @@ def step_plot(
         title: written above the plot.
         unit: of time, as the axis names it.
         settling, rise: the shares with which `info` was asked for.
+        ax: axes of matplotlib to draw into, two for loops, in place of a new figure.
     Raises:
         ValueError: for an end that is not positive, info with several systems, or systems beside loops.
 
@@ -434,10 +443,10 @@ def step_plot(
             u,
         ]
     names = ["$y$", "$u$"][: len(panels)] if controls or len(systems) > 1 else None
-    plot = time_plot(panels, times, title=title, xlabel=f"$t$ [{unit}]", ylabel=names)
+    plot = time_plot(panels, times, title=title, xlabel=f"$t$ [{unit}]", ylabel=names, ax=ax)
     if info is not None:
         with styled():
-            found = _mark_info(plot.figure.axes[0], plot.lines[next(iter(y))], info, settling, rise, unit)
+            found = _mark_info(plot.axes[0], plot.lines[next(iter(y))], info, settling, rise, unit)
         plot.alt += "".join(f"{'; ' if k == 0 else ', '}{words}" for k, words in enumerate(found))
     return plot
 

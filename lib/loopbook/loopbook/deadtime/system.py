@@ -6,7 +6,7 @@ import functools
 import itertools
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Self, overload
 
 import numpy as np
 import sympy
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from loopbook.figures import Picture, PlanePlot, TimePlot
+    from loopbook.types import TransferFunctionLike
 
 __all__ = ["System", "closed_loop"]
 
@@ -125,6 +126,28 @@ class System(DelayFraction):
         """
         return dominant_roots(self.denominator, count, f"{self.expr}")
 
+    # ---- python-control's names
+
+    def feedback(self, other: TransferFunctionLike = 1, sign: int = -1) -> System:
+        """Return ``G/(1 - sign*G*H)``, this system in the forward path and another in the path back: `closed_loop`.
+
+        ``control.feedback(G, H)`` calls this for a `System` G, so the result is exact. Where python-control's own
+        system comes first, make a `System` of it: ``System(G).feedback(H)``.
+
+        Arguments:
+            other: H, as for `closed_loop`.
+            sign: -1 for negative feedback, 1 for positive feedback.
+        Raises:
+            ValueError: for another sign, or as `closed_loop`.
+
+        >>> import control
+        >>> control.feedback(System(sympy.exp(-s) / s), 1)
+        System(exp(-s)/(s + exp(-s)))
+        """
+        if sign not in (-1, 1):
+            raise ValueError(f"the sign is {sign!r}: expected -1 or 1")
+        return closed_loop(self, other if sign == -1 else -read(other))
+
     # ---- frequency
 
     def frequency(self, omega: ArrayLike) -> np.ndarray:
@@ -143,6 +166,10 @@ class System(DelayFraction):
 
     # ---- responses in time
 
+    @overload
+    def step(self, times: ArrayLike) -> np.ndarray: ...
+    @overload
+    def step(self, times: None = None) -> Response: ...
     def step(self, times: ArrayLike | None = None) -> np.ndarray | Response:
         """Return the output for a unit step at t = 0 of the input, the system being at rest before.
 
@@ -150,9 +177,9 @@ class System(DelayFraction):
         order at first, while the response is still powers of ten smaller, about 1e-13 of what it is a lag later.
 
         Arguments:
-            times: an array of times, not negative, in the unit of the lags.
+            times: a number or an array, not negative, in the unit of the lags.
         Returns:
-            An array; without times the response itself up to `horizon`, as `step_until` returns it.
+            An array of that shape; without times the response itself up to `horizon`, as `step_until` returns it.
         Raises:
             ValueError: for negative times, or where so many combinations of the dead times are points of discontinuity
                 that the response cannot be followed.
@@ -276,7 +303,7 @@ class System(DelayFraction):
         Arguments:
             omega: the lowest and the highest frequency; by themselves a decade around the corner frequencies.
             margins: mark the margins of the closed loop around this system as the open one.
-            options: title, unit of time, decibels, as `pictures.bode_plot` takes them.
+            options: title, unit of time, decibels, axes of one's own, as `pictures.bode_plot` takes them.
 
         >>> System(sympy.exp(-s) / (2 * s)).bode(margins=True)
         <magnitude and phase [deg] against omega [rad/s]; gain margin 3.14, phase margin 61.4°>
@@ -301,7 +328,7 @@ class System(DelayFraction):
         Arguments:
             end: the last time; by itself late enough for the response to settle.
             info: mark what `step_info` says, of a system that is stable.
-            options: title, unit of time, as `pictures.step_plot` takes them.
+            options: title, unit of time, axes of one's own, as `pictures.step_plot` takes them.
 
         >>> System(1 / (s**2 + s + 1)).plot_step()
         <y(t) against t [s]; overshoot 16.3 %, rise time 1.64 s, settling time 8.08 s>
@@ -359,9 +386,15 @@ class System(DelayFraction):
         Raises:
             ValueError: for another order, frequencies beside an order, or others, or a pole at one of them.
 
-        >>> System(sympy.exp(-s) / (s + 1)).to_control(order=4).nstates
+        The way back is `System` itself, and every function of ours takes python-control's systems. Its operators take
+        ours: ``G + H`` and ``G * H`` are a `System` where one of them is. Its functions ask for its own types, but for
+        ``control.feedback`` (see `feedback`): ``control.bode(H.to_control())``, ``control.step_response(
+        H.to_control(order=6))``.
+
+        >>> H = System(sympy.exp(-s) / (s + 1))
+        >>> H.to_control(order=4).nstates
         5
-        >>> System(sympy.exp(-s) / (s + 1)).to_control(omega=[0.5, 1]).magnitude.round(4)
+        >>> H.to_control(omega=[0.5, 1]).magnitude.round(4)
         array([0.8944, 0.7071])
         """
         import control

@@ -10,6 +10,7 @@ from loopbook.figures.picture import Picture, titled
 from loopbook.figures.style import GREY, look, pale, styled
 
 if TYPE_CHECKING:
+    from loopbook.figures.canvas import OwnAxes
     from loopbook.types import Number
 
 ROW = 0.34  # inches
@@ -23,6 +24,7 @@ def half_rule_plot(
     order: int = 1,
     title: str | None = None,
     unit: str = "s",
+    ax: OwnAxes = None,
 ) -> Picture:
     """Draw the half rule as bars that are cut: where each time constant of a process goes in its model.
 
@@ -35,6 +37,7 @@ def half_rule_plot(
         order: 1 or 2, of the model.
         title: written above the picture.
         unit: of time, as the axis names it.
+        ax: axes of matplotlib to draw into, in place of a new figure.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
     Raises:
@@ -56,7 +59,7 @@ def half_rule_plot(
     model = {home: [piece for piece in pieces if piece.home == home] for home in dict.fromkeys(p.home for p in pieces)}
 
     with styled():
-        figure, (axes,) = canvas.panels([ROW * (len(rows) + len(model) + 0.7)])
+        figure, (axes,) = canvas.panels([ROW * (len(rows) + len(model) + 0.7)], ax)
         places = [-n - (0.7 if n >= len(rows) else 0) for n in range(len(rows) + len(model))]
         for place, row in zip(places, [*rows.values(), *model.values()], strict=True):
             _bar(axes, place, row)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias, Union
+
+import numpy as np
 
 from loopbook.figures.style import DOTS_PER_INCH, WIDTH
 
@@ -14,21 +16,39 @@ if TYPE_CHECKING:
     from matplotlib.mathtext import MathTextParser
     from PIL import Image
 
+#: What a picture is drawn into: axes of one's own, as many as it has panels; or None for a new figure.
+OwnAxes: TypeAlias = Union["Axes", Sequence["Axes"], np.ndarray, None]
+
 # inches around and between the panels, for the names of the axes, their numbers and the title
 LEFT, RIGHT, BELOW, ABOVE, BETWEEN = 0.66, 0.12, 0.5, 0.32, 0.14
 MARGIN = 0.06  # inches of white around what is drawn
 
 
-def panels(heights: Sequence[float]) -> tuple[Figure, list[Axes]]:
+def panels(heights: Sequence[float], ax: OwnAxes = None) -> tuple[Figure, list[Axes]]:
     """Return a figure with panels of these heights above one another, in inches, and a common horizontal axis.
 
     The panels stay where they are: what the axes need outside is not negotiated but sticks out, and is cut out with the
     rest. So nothing is drawn twice, and all figures of a page have their axes in one line.
 
+    Arguments:
+        heights: of the panels.
+        ax: axes of one's own in their place, one of matplotlib or as many as there are heights.
+    Raises:
+        ValueError: for another number of axes.
+
     >>> figure, (above, below) = panels([2, 1])
     >>> figure.get_size_inches().round(2), round(above.get_position().height / below.get_position().height)
     (array([6.  , 3.96]), 2)
     """
+    if ax is not None:
+        own = list(np.ravel(ax))
+        if len(own) != len(heights):
+            raise ValueError(f"{len(own)} axes for {len(heights)} panels: expected as many")
+        for axes in own[1:]:
+            if not axes.get_shared_x_axes().joined(axes, own[0]):
+                axes.sharex(own[0])
+        return own[0].figure.canvas.figure, own  # of a subfigure the whole
+
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

@@ -59,12 +59,19 @@ class Picture:
 
     def _image(self):
         """The figure as an image of Pillow."""
+        if self.figure.dpi != DOTS_PER_INCH:  # one that is not ours, into which it was drawn
+            from PIL import Image
+
+            self.save(data := io.BytesIO(), format="png")
+            return Image.open(data).convert("RGB")
         with styled():
             return drawn(self.figure)
 
     # The figure belongs to an object of our own because Jupyter would draw a matplotlib figure its own way, without
     # the description, and only after pyplot has been imported.
     def _repr_mimebundle_(self, include=None, exclude=None):
+        if hasattr(self.figure, "number"):  # a figure of pyplot, in which it was drawn, is shown by pyplot
+            return {"text/plain": repr(self)}, {}
         image = self.png()
         width, height = (round(dots * 96 / DOTS_PER_INCH) for dots in struct.unpack(">II", image[16:24]))
         data = {"image/png": base64.b64encode(image).decode(), "text/plain": repr(self)}

@@ -14,9 +14,10 @@ from loopbook.figures.style import GREY, ON_WHITE, RESPONSE_COLOURS, TINTS, WIDT
 from plainmath.tables import plain_words
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
+    from loopbook.figures.canvas import OwnAxes
     from loopbook.types import Number, Values
 
 
@@ -26,9 +27,9 @@ TALL = 0.55 * WIDTH  # of a panel, in inches
 class PlanePlot(Picture):
     """What `plane_plot`, `map_plot` and `level_plot` return, to which areas, points and words can be added."""
 
-    def __init__(self, figure: Figure, alt: str):
-        super().__init__(figure, alt)
-        self.axes = figure.axes[0]
+    def __init__(self, axes: Axes, alt: str):
+        super().__init__(axes.figure.canvas.figure, alt)
+        self.axes = axes
 
     def area(self, x: Values, y: Values, label: str) -> Self:
         """Shade the polygon with these corners; the legend calls it by its label. Returns the plot itself.
@@ -124,6 +125,7 @@ def plane_plot(
     log: bool = False,
     equal: bool = False,
     legend: bool = True,
+    ax: OwnAxes = None,
 ) -> PlanePlot:
     """Plot curves in a plane: limits of stability, frequency responses in the complex plane.
 
@@ -136,6 +138,7 @@ def plane_plot(
         log: logarithmic axes.
         equal: one unit is as long on both axes, as for complex numbers; then both axes are drawn at zero.
         legend: explain several curves in a legend; not needed where they are borders of regions that have their names.
+        ax: axes of matplotlib to draw into, in place of a new figure.
     Returns:
         A `PlanePlot`, which a notebook shows as the value of a cell; ``.area``, ``.region``, ``.line``,
             ``.points`` and ``.text`` add to it.
@@ -148,7 +151,7 @@ def plane_plot(
     if not isinstance(curves, dict) or not curves:
         raise ValueError(f"the curves are {curves!r}: expected {{label: (x, y)}} with at least one")
     with styled():
-        figure, (axes,) = canvas.panels([TALL if not equal else TALL + 0.12 * WIDTH])
+        _, (axes,) = canvas.panels([TALL if not equal else TALL + 0.12 * WIDTH], ax)
         for number, (label, (x, y, *role)) in enumerate(curves.items()):
             x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
             if x.shape != y.shape:
@@ -163,7 +166,7 @@ def plane_plot(
             add_legend(axes)
     shown = ", ".join(map(plain_words, curves))
     words = f"{shown}: {plain_words(ylabel)} against {plain_words(xlabel)}"
-    return PlanePlot(figure, titled(title, words))
+    return PlanePlot(axes, titled(title, words))
 
 
 def map_plot(
@@ -175,6 +178,7 @@ def map_plot(
     label: str,
     title: str | None = None,
     log: bool = False,
+    ax: OwnAxes = None,
 ) -> PlanePlot:
     """Plot whole numbers on a grid as shades of grey, white for 0, with a scale: a map of unstable poles, for example.
 
@@ -183,7 +187,7 @@ def map_plot(
         numbers: an integer array with a row for each y and a column for each x; a negative one is drawn as 0.
         xlabel, ylabel: names of the axes with their units.
         label: what the numbers are.
-        title, log: as in `plane_plot`.
+        title, log, ax: as in `plane_plot`.
     Returns:
         A `PlanePlot`.
     Raises:
@@ -204,16 +208,16 @@ def map_plot(
     ]
     colours = ListedColormap(greys[: len(levels)])
     with styled():
-        figure, (axes,) = canvas.panels([TALL])
+        _, (axes,) = canvas.panels([TALL], ax)
         mesh = axes.pcolormesh(
             x, y, shade, cmap=colours, vmin=-0.5, vmax=len(levels) - 0.5, shading="nearest", rasterized=True
         )
         axes.grid(False)
-        scale = figure.colorbar(mesh, ax=axes, ticks=range(len(levels)), label=label)
+        scale = axes.figure.colorbar(mesh, ax=axes, ticks=range(len(levels)), label=label)
         scale.ax.set_yticklabels(levels)
         _finish(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]), log)
     words = f"{plain_words(label)} ({levels[0]} to {levels[-1]}): {plain_words(ylabel)} against {plain_words(xlabel)}"
-    return PlanePlot(figure, titled(title, words))
+    return PlanePlot(axes, titled(title, words))
 
 
 def level_plot(
@@ -226,6 +230,7 @@ def level_plot(
     label: str,
     title: str | None = None,
     log: bool = False,
+    ax: OwnAxes = None,
 ) -> PlanePlot:
     """Plot lines of equal value over a plane, with the value written on each: a criterion over two settings.
 
@@ -235,7 +240,7 @@ def level_plot(
         levels: increasing values, those of the lines.
         xlabel, ylabel: names of the axes with their units.
         label: what the values are.
-        title, log: as in `plane_plot`.
+        title, log, ax: as in `plane_plot`.
     Returns:
         A `PlanePlot`.
     Raises:
@@ -248,14 +253,14 @@ def level_plot(
     """
     x, y, values = _on_grid(x, y, values)
     with styled():
-        figure, (axes,) = canvas.panels([TALL])
+        _, (axes,) = canvas.panels([TALL], ax)
         finite = np.ma.masked_invalid(values)
         lines = axes.contour(x, y, finite, levels, colors=RESPONSE_COLOURS[0], linewidths=1.3)
         axes.clabel(lines, fmt="%g", fontsize=10, colors="#000000")
         _finish(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]), log)
     words = f"levels of {plain_words(label)}, {levels[0]:g} to {levels[-1]:g}"
     words = f"{words}: {plain_words(ylabel)} against {plain_words(xlabel)}"
-    return PlanePlot(figure, titled(title, words))
+    return PlanePlot(axes, titled(title, words))
 
 
 def _on_grid(x, y, values):

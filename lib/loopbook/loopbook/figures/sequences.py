@@ -9,6 +9,7 @@ import numpy as np
 import sympy
 
 from loopbook.figures import canvas
+from loopbook.figures.canvas import OwnAxes
 from loopbook.figures.picture import titled
 from loopbook.figures.style import DOTS_PER_INCH, WIDTH, look, styled
 from loopbook.figures.time import Recorded, TimePlot, times_of
@@ -40,6 +41,7 @@ def sequence_trends(
     on_off: Sequence[str] | None = None,
     title: str | None = None,
     minutes: bool = False,
+    ax: OwnAxes = None,
 ) -> TimePlot:
     """Plot a run as the screen of a batch plant shows it: trends above, below them bars for what is on and active.
 
@@ -50,6 +52,7 @@ def sequence_trends(
         on_off: names of the signals that are 0 or 1; the boolean outputs of the chart if not given.
         title: written above the plot; begins with the name of the book's figure where there is one.
         minutes: write the time in minutes, whatever the unit of the run is.
+        ax: axes of matplotlib to draw into, in place of a new figure, as many as there are panels.
     Returns:
         A `figures.TimePlot`, which a notebook shows as the value of a cell.
     Raises:
@@ -70,7 +73,7 @@ def sequence_trends(
     heights = [1.05] * len(signals) + [ROW * len(group) + 0.2 for group in rows]
     lines = {}
     with styled():
-        figure, grid = canvas.panels(heights)
+        figure, grid = canvas.panels(heights, ax)
         for axes, names in zip(grid, signals, strict=False):
             lines |= _trend(axes, run, times, names)
         for axes, group in zip(grid[len(signals) :], rows, strict=True):
@@ -81,11 +84,11 @@ def sequence_trends(
         grid[-1].set_xlim(times[0], times[-1])
         grid[-1].set_xlabel(f"$t$ [{unit}]")
         grid[0].set_title(title or "")
-        figure.align_ylabels()
+        figure.align_ylabels(grid)
     shown = [", ".join(name for names in signals for name in names)] * bool(signals)
     shown += [f"on and off: {', '.join(on_off)}"] * bool(on_off) + [f"active steps: {', '.join(chart.steps)}"]
     words = f"{'; '.join(shown)} against t [{unit}]"
-    return TimePlot(figure, titled(title, words), lines)
+    return TimePlot(grid, titled(title, words), lines)
 
 
 def _checked(run, chart, signals, on_off):

@@ -18,9 +18,10 @@ from plainmath.tables import plain_words
 from plainmath.validation import did_you_mean, increasing, one_of
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
+    from loopbook.figures.canvas import OwnAxes
     from loopbook.types import Limits, Number, Signal, Values
 
 #: A signal in a plot; in a pair with its role, or with the number of a response, where it has its look.
@@ -28,7 +29,7 @@ Drawn: TypeAlias = "Signal | tuple[Signal, str | int]"
 
 
 class Recorded(Protocol):
-    """What `trends` draws: a `simulation.Run`, a `deadtime.LoopResponse`, or what has their signals."""
+    """What `trends` draws: a `simulation.Run`, a `loops.LoopResponse`, or what has their signals."""
 
     @property
     def times(self) -> np.ndarray:
@@ -64,8 +65,9 @@ class Recorded(Protocol):
 class TimePlot(Picture):
     """What `time_plot` returns: a picture of signals against time, on which points and levels can be marked."""
 
-    def __init__(self, figure: Figure, alt: str, lines: dict[str, Line2D]):
-        super().__init__(figure, alt)
+    def __init__(self, axes: Sequence[Axes], alt: str, lines: dict[str, Line2D]):
+        super().__init__(axes[0].figure.canvas.figure, alt)
+        self.axes = axes  # from the top down
         self.lines = lines  # {label: matplotlib line}
 
     def mark(self, time: Number, label: str, signal: str | None = None) -> Self:
@@ -228,11 +230,11 @@ class TimePlot(Picture):
         >>> time_plot({"$y$": 1 - sympy.exp(-t)}, range(6)).event(2, "load")
         <y against t [s]; at 2: load>
         """
-        time, top = float(time), self.figure.axes[0]
+        time, top = float(time), self.axes[0]
         first, last = top.get_xlim()
         if not first <= time <= last:
             raise ValueError(f"cannot mark t = {time:g}: the plot shows {first:g} to {last:g}")
-        for axes in self.figure.axes:
+        for axes in self.axes:
             axes.vlines(time, 0, 1, transform=axes.get_xaxis_transform(), **EVENT)
         on_right = time < first + 0.75 * (last - first)
         with styled():
@@ -283,6 +285,7 @@ def time_plot(
     before: float = 0,
     low: bool = False,
     error_from: str | None = None,
+    ax: OwnAxes = None,
 ) -> TimePlot:
     """Plot signals against time, in one panel or in several above one another with a common time axis.
 
@@ -303,6 +306,7 @@ def time_plot(
         low: make it less high, and flat the legend under a given `ylim`, where a chapter has many figures.
         error_from: label of a curve in the first panel from which the others there hardly differ; a panel below shows
             by how much they do.
+        ax: axes of matplotlib to draw into, in place of a new figure, as many as there are panels.
     Returns:
         A `TimePlot`, which a notebook shows as the value of a cell; ``.mark``, ``.level``, ``.points``, ``.area`` and
             ``.event`` add to it.
@@ -346,7 +350,8 @@ def time_plot(
         unit = 0.8 if low else 1.0
         if error_from is not None:
             heights.insert(1, 1)
-        figure, grid = canvas.panels([unit * height for height in heights])
+        figure, grid = canvas.panels([unit * height for height in heights], ax)
+        panes = [*grid]
         of_error = grid.pop(1) if error_from is not None else None
         lines, looks = {}, {}
         number = 0
@@ -361,9 +366,9 @@ def time_plot(
         if of_error is not None:
             _errors(of_error, lines, error_from, {label: looks[label] for label in curves[0]})
         grid[0].set_xlim(times[0] - before, times[-1])
-        figure.axes[-1].set_xlabel(xlabel)
+        panes[-1].set_xlabel(xlabel)
         grid[0].set_title(title or "")
-        figure.align_ylabels()
+        figure.align_ylabels(panes)
         explained = set()
         for axes, panel, fixed in zip(grid, curves, fixed_axes, strict=True):
             responses = [{(role, word.strip()) for word in label.split(",")} for label, (*_, role) in panel.items()]
@@ -379,7 +384,7 @@ def time_plot(
     if error_from is not None:
         shown.insert(1, f"difference from {plain_words(error_from)}")
     shown = "; ".join(shown)
-    return TimePlot(figure, titled(title, f"{shown} against {plain_words(xlabel)}"), lines)
+    return TimePlot(panes, titled(title, f"{shown} against {plain_words(xlabel)}"), lines)
 
 
 def _errors(axes, lines, reference, looks):
@@ -444,11 +449,12 @@ def trends(
     minutes: bool = False,
     limits: Limits | None = None,
     control_limits: Limits | None = None,
+    ax: OwnAxes = None,
 ) -> TimePlot:
     """Plot loops as an operator sees them: setpoint and measurement above, control signal below.
 
     Arguments:
-        runs: a `simulation.Run` or a `deadtime.LoopResponse`, or ``{label: run}`` for several with the same times and
+        runs: a `simulation.Run` or a `loops.LoopResponse`, or ``{label: run}`` for several with the same times and
             the same setpoint.
         title: written above the plot; begins with the name of the book's figure where there is one.
         disturbances: names of inputs of the plant, each shown in a panel of its own below the others.
@@ -456,6 +462,7 @@ def trends(
         minutes: write the time in minutes, whatever the unit of the runs is.
         limits, control_limits: lowest and highest value of the upper panel's axis, and of the control signal's, where
             they must not follow the signals.
+        ax: axes of matplotlib to draw into, in place of a new figure, as many as there are panels.
     Returns:
         A `TimePlot`, which a notebook shows as the value of a cell.
     Raises:
@@ -497,7 +504,7 @@ def trends(
     names = [f"${sympy.latex(sympy.Symbol(x))}$ [{first.unit(x)}]" for x in (output, control, *disturbances)]
     ylim = [limits, control_limits, *(None for _ in disturbances)]
     times, unit = times_of(first, minutes)
-    plot = time_plot(panels, times, title=title, xlabel=f"$t$ [{unit}]", ylabel=names, ylim=ylim)
+    plot = time_plot(panels, times, title=title, xlabel=f"$t$ [{unit}]", ylabel=names, ylim=ylim, ax=ax)
     for panel, name in zip(panels, (output, control, *disturbances), strict=True):
         for label in panel:
             if ("setpoint" if label == "setpoint" else name) in first.held:

@@ -12,7 +12,7 @@ import sympy
 
 from loopbook.approximation import SOPDT
 from loopbook.identification.records import even_step, record
-from loopbook.identification.residuals import Residuals
+from loopbook.identification.residuals import CORRELATED, Residuals
 from loopbook.identification.search import least_squares
 from loopbook.identification.zero_order_hold import HOLDS, KINDS, DrivenChain
 from plainmath.expressions import exact
@@ -20,6 +20,8 @@ from plainmath.validation import number, one_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from loopbook.figures import TimePlot
 
 STARTS = ("rest", "unknown")
 LAGS = 7  # how many of each are tried at first
@@ -40,11 +42,15 @@ class Fit:
         model: the `SOPDT`.
         kind, hold: as given to `fit`.
         parameters: K, T1 or T1 and T2, and delay, floats by name.
-        errors: the standard error of each of them, if what is left of the data is white noise, and if the response is
+        errors: the standard error of each of them, if what is left of the data is noise, and if the response is
             nearly linear in them over some standard errors. It is not where two lags may be equal, or one be too short
             to be seen, or noise is large; then they are rough. `inf` is what cannot be said.
         residual: standard deviation of what is left, in the unit of the measurement.
-        times, y, fitted: the record, and what the model makes of the control signal; arrays.
+        whiteness: the p-value of the test of Ljung and Box on what is left. Below 0.01 it is not white noise. Then the
+            errors are those for noise of first order, AR(1), with the correlation of what is left. An unmeasured load,
+            a coarse converter or a wrong kind of model is no such noise: it shifts the parameters, and they may be
+            wrong by far more than their errors. Look at `plot`.
+        times, u, y, fitted: the record, and what the model makes of the control signal; arrays.
     """
 
     model: SOPDT
@@ -52,7 +58,9 @@ class Fit:
     parameters: dict[str, float]
     errors: dict[str, float]
     residual: float
+    whiteness: float
     times: np.ndarray
+    u: np.ndarray
     y: np.ndarray
     fitted: np.ndarray
     hold: str
@@ -64,8 +72,43 @@ class Fit:
 
     def __repr__(self) -> str:
         values = [f"{name} = {value:.4g} ± {self.errors[name]:.1g}" for name, value in self.parameters.items()]
+        shown = f"residual {self.residual:.3g}"
+        if self.whiteness < CORRELATED:
+            shown += (
+                f", correlated (Ljung-Box p = {self.whiteness:.1g}): ± holds for noise of first order, "
+                "not where something unmeasured acts"
+            )
         rough = "" if self._is_regular() else ", the errors are rough"
-        return f"<fit, {self.kind} with dead time: {', '.join(values)}; residual {self.residual:.3g}{rough}>"
+        return f"<fit, {self.kind} with dead time: {', '.join(values)}; {shown}{rough}>"
+
+    def plot(self, title: str | None = None, unit: str = "s", of_y: str = "", of_u: str = "") -> TimePlot:
+        """Plot the record and the model, the residuals, and the control signal, one below the other.
+
+        Arguments:
+            title: written above the plot.
+            unit, of_y, of_u: units of time, measurement and control signal, as the axes name them.
+
+        >>> import numpy as np
+        >>> times, u = np.arange(60.0), np.repeat([0, 1], [5, 55])
+        >>> noise = np.random.default_rng(1).normal(0, 0.02, 60)
+        >>> y = 2 * (1 - np.exp(-np.maximum(times - 7.5, 0) / 10)) + noise
+        >>> fit(times, u, y).plot("A tank", of_y="°C", of_u="%")
+        <A tank: measurement, model; residual; u against t [s]>
+        """
+        from loopbook.figures import time_plot
+        from loopbook.figures.style import ZERO
+
+        panels = [
+            {"measurement": (self.y, "raw"), "model": (self.fitted, "measurement")},
+            {"residual": (self.y - self.fitted, "raw")},
+            {"$u$": (self.u, "control signal")},
+        ]
+        names = [f"{name} [{of}]" if of else name for name, of in zip(("$y$", "residual", "$u$"), (of_y, of_y, of_u))]  # noqa: B905
+        plot = time_plot(panels, self.times, title=title, xlabel=f"$t$ [{unit}]", ylabel=names)
+        plot.figure.axes[1].axhline(0, **ZERO)
+        if self.hold == "zero order":
+            plot.lines["$u$"].set_drawstyle("steps-post")
+        return plot
 
     def _is_regular(self):
         """Whether all parameters are so many standard errors from where they are not regular that these say enough."""
@@ -149,13 +192,13 @@ def fit(
         raise ValueError(f"the dead time would be {longest_delay:g} or longer: expected a larger longest_delay")
     if p[-1] < CLOSE:
         p[-1] = 0.0
-    found, errors, residual, fitted = residuals.described(p)
+    found, errors, residual, fitted, white = residuals.described(p)
     parameters = {name: float(units[name] * value) for name, value in found.items()}
     errors = {name: float(units[name] * value) for name, value in errors.items()}
     rounded = {name: exact(float(f"{value:.{DIGITS}g}")) for name, value in parameters.items()}
     model = SOPDT(**({"T1": sympy.oo} if integrators else {}), **rounded)
     fitted = rest + unit_y * fitted
-    return Fit(model, kind, parameters, errors, float(residual * unit_y), times, y, fitted, hold)
+    return Fit(model, kind, parameters, errors, float(residual * unit_y), white, times, u, y, fitted, hold)
 
 
 def _search(residuals):

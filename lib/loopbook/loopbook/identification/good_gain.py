@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loopbook.deadtime import Loop
 from loopbook.identification.records import record
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.stability import ultimate
 from loopbook.types import Number, TransferFunctionLike

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.identification.zero_order_hold import DrivenChain
+from loopbook.identification.zero_order_hold import DrivenChain, _accumulated
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,6 +22,9 @@ LONGEST = 100  # lag that is looked for, in records
 DEPENDENT = 1e-9  # a regressor of which so little is left by others is none
 EQUAL = 1e-9  # share by which equal lags differ
 WIDTH = 1e-5  # of a difference for a standard error
+CORRELATED = 0.01  # a smaller p-value says that residuals are not white
+MOST = 0.99  # correlation from one sample to the next
+NOTHING = 1e-7  # as a part of the measurement's span: what is left is rounding
 
 
 class Residuals:
@@ -94,8 +97,12 @@ class Residuals:
         free = self.chain.free(lags)
         return [free[:, :, k] for k in range(free.shape[2] - self.leveled)]
 
-    def described(self, p: np.ndarray) -> tuple[dict[str, float], dict[str, float], float, np.ndarray]:
-        """Parameters and standard errors by name, the standard deviation of what is left, and the model's response."""
+    def described(self, p: np.ndarray) -> tuple[dict[str, float], dict[str, float], float, np.ndarray, float]:
+        """Parameters and standard errors by name, the standard deviation of what is left, the model's response.
+
+        Last the p-value of `whiteness`. Where it is below `CORRELATED`, the standard errors are those of least squares
+        in noise of first order, AR(1), with the coefficient that the residuals have.
+        """
 
         def response(p, linear=None):
             lags = self.lags(p[:, None])
@@ -125,24 +132,58 @@ class Residuals:
             apart = max(math.sqrt(1 - p[1]), EQUAL)
             bend = math.exp(p[0]) / 4 / apart
             named[1, 1:3], named[2, 1:3] = [T[0] - SHORTEST, -bend], [T[1] - SHORTEST, bend]
-        variance = ((self.target - fitted) ** 2).sum() / max(self.freedom, 1)
+        left = self.target - fitted
+        deviation = math.sqrt((left**2).sum() / max(self.freedom, 1))
+        white, first = whiteness(left) if deviation > NOTHING else (1.0, 0.0)
         sizes = np.linalg.norm(jacobian, axis=0)
         seen = sizes > DEPENDENT * sizes.max()
         errors = np.full(len(names), math.inf)
-        _, R = np.linalg.qr(jacobian[:, seen] / sizes[seen])
+        Q, R = np.linalg.qr(jacobian[:, seen] / sizes[seen])
         if abs(np.diag(R)).min() > DEPENDENT and self.freedom > 0:
             shares = np.linalg.solve(R.T, (named[:, seen] / sizes[seen]).T)
-            errors = math.sqrt(variance) * np.linalg.norm(shares, axis=0)
+            errors = deviation * np.linalg.norm(shares, axis=0)
+            if white < CORRELATED:
+                count = len(left)
+                first = min(first + (1 + 3 * first) / count, MOST)  # which a record shows too small (Kendall)
+                taken = _sizes(Q, first).sum()  # of the noise, by the fit
+                errors = np.sqrt((left**2).sum() / max(count - taken, 1) * _sizes(Q @ shares, first))
             errors[(named[:, ~seen] != 0).any(axis=1) | (abs(named) > 0.1 / EQUAL * (1 + T.sum())).any(axis=1)] = (
                 math.inf
             )
         parameters = dict(zip(names, [linear[0], *T, delay], strict=True))
-        return parameters, dict(zip(names, errors, strict=True)), math.sqrt(variance), fitted
+        return parameters, dict(zip(names, errors, strict=True)), deviation, fitted, white
 
     @property
     def names(self) -> list[str]:
         """Of the lags."""
         return ["T2"] if self.chain.integrators and self.chain.lags else ["T1", "T2"][: self.chain.lags]
+
+
+def whiteness(left: np.ndarray) -> tuple[float, float]:
+    """Return the p-value of the test of Ljung and Box that residuals are white, and their first autocorrelation.
+
+    The test takes as many autocorrelations as a fifth of the record has samples, at most ten: correlated noise, a drift
+    and an unmeasured load show in the first ones. Of fewer than ten residuals the p-value is 1.
+
+    >>> rng = np.random.default_rng(1)
+    >>> round(whiteness(rng.normal(size=200))[0], 2), whiteness(rng.normal(size=200).cumsum())[0] < 1e-9
+    (0.06, True)
+    """
+    from scipy.special import chdtrc
+
+    count = len(left)
+    lags = np.arange(1, min(10, count // 5) + 1)
+    correlations = np.array([left[k:] @ left[:-k] for k in lags]) / (left @ left)
+    if count < 10:
+        return 1.0, 0.0
+    portmanteau = count * (count + 2) * (correlations**2 / (count - lags)).sum()
+    return float(chdtrc(len(lags), portmanteau)), float(correlations[0])
+
+
+def _sizes(columns, first):
+    """The variance of the product of each column with AR(1) noise of variance one, whose first correlation is given."""
+    earlier = _accumulated(np.array([[first]]), columns)[1:]  # each entry and those before it, as far as correlated
+    return (columns * (2 * earlier - columns)).sum(axis=0)
 
 
 def _norm(columns):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 
 import numpy as np
 import sympy
@@ -28,16 +28,31 @@ class CompiledModel:
     def __init__(self, plant: Plant):
         equations = plant.state_equations()
         self.states, self.names = list(equations), [name_of(x) for x in equations]
-        self.rates, self.driving = self._compiled(plant, equations.values())
-        self.measure, self.measuring = self._compiled(plant, plant.measured.values())
+        self.rates, self.driving, self._of_rates = self._compiled(plant, equations.values())
+        self.measure, self.measuring, _ = self._compiled(plant, plant.measured.values())
 
     @property
     def delayed_states(self) -> list[tuple[str, float]]:
         """The states that act on the plant some time later: (name, delay)."""
         return [(name, delay) for name, delay in self.driving if name in self.names]
 
+    def matrices(self, constant: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray] | None:
+        """A and B of the rates A x + B v, v being what drives them, and 1; None where they are not linear.
+
+        Inputs that are constant are numbers for this purpose: they are part of A, and of B's last column.
+        """
+        symbols, formulas = self._of_rates
+        driving = zip(symbols[len(self.states) :], self.driving, strict=True)
+        known = {x: sympy.Float(constant[name]) for x, (name, _) in driving if name in constant}
+        try:
+            M, rest = sympy.linear_eq_to_matrix([f.xreplace(known) for f in formulas], symbols)
+            M = np.array(M.row_join(-rest), dtype=float)
+        except (ValueError, TypeError):  # of what is not linear, and of a formula with the time itself
+            return None
+        return M[:, : len(self.states)], M[:, len(self.states) :]
+
     def _compiled(self, plant, formulas):
-        """A function for the formulas, and what else it needs: (name, delay)."""
+        """A function for the formulas, what it needs besides the states: (name, delay), and symbols and formulas."""
         formulas = [plant.numbers(formula) for formula in formulas]
         if any(formula.has(sympy.zoo, sympy.nan, sympy.oo) for formula in formulas):
             raise ValueError(f"{plant} divides by zero: expected parameters that are not zero")
@@ -46,10 +61,11 @@ class CompiledModel:
         found = sorted({x for formula in formulas for x in formula.atoms(AppliedUndef)}, key=str)
         others = {x: sympy.Dummy() for x in found}
         formulas = [formula.xreplace(others) for formula in formulas]
+        symbols = [*symbols.values(), *others.values()]
         # a case of a Piecewise that does not hold is not to be computed beforehand
         cse = not any(formula.has(sympy.Piecewise) for formula in formulas)
-        function = sympy.lambdify([*symbols.values(), *others.values()], formulas, "math", cse=cse)
-        return function, [(name_of(x), float(t - x.args[0])) for x in found]
+        function = sympy.lambdify(symbols, formulas, "math", cse=cse)
+        return function, [(name_of(x), float(t - x.args[0])) for x in found], (symbols, formulas)
 
 
 _COMPILED = weakref.WeakKeyDictionary()  # of the plants in use: a plant never changes, and compiling takes its time
@@ -81,7 +97,8 @@ class PlantIntegrator:
         driven: Collection[str],
         past: PlantIntegrator | None,
     ):
-        self.plant, self.sources, self.driven, self.past, self.rows = plant, sources, driven, past, []
+        self.plant, self.sources, self.samples, self.driven, self.past = plant, sources, times, driven, past
+        self.rows = []  # what is measured at each sample so far
         self.begin, self.step = times[0], times[1] - times[0]
         model = compiled(plant)
         self.rates, self.driving, self.delayed_states = model.rates, model.driving, model.delayed_states
@@ -210,6 +227,12 @@ class PlantIntegrator:
         if name in self.names:
             return self.state_at(time)[self.names.index(name)]
         return self.sources[name].at(time)
+
+    def reading(self, name: str) -> Callable[[], float]:
+        """A function that says what a state or a measured signal was at the last sample."""
+        names, rows = (self.measured, self.rows) if name in self.measured else (self.names, self.trace)
+        n = names.index(name)
+        return lambda: rows[-1][n]
 
     def readings(self, time: float) -> dict[str, float]:
         """What the plant says at the last sample: states, measured signals and inputs that no block drives, by name."""

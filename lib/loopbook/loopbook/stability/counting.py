@@ -154,8 +154,9 @@ def unstable_roots(denominator: Mapping, removable: int = 0) -> float:
     otherwise the interval is divided, and computed with more digits where rounding is the reason, up to 24. Beyond a
     certain frequency the highest power prevails, also by a bound. No more than 400,000 intervals are looked at. What is
     still not told is decided without digits for a polynomial, and for one that all parts have in common, if the
-    coefficients are fractions of fewer than 25 digits. (Without such a factor there can be roots on the axis other than zero only where the highest power returns with a dead time of
-    which the others are multiples, or where several dead times are no multiples of one.)
+    coefficients are fractions of fewer than 25 digits. (Without such a factor there can be roots on the axis other than
+    zero only where the highest power returns with a dead time of which the others are multiples, or where several dead
+    times are no multiples of one.)
 
     Arguments:
         denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is.
@@ -333,7 +334,10 @@ def of_one_order(
     for top in set(tops[1].tolist()):
         points = np.flatnonzero(tops[1] == top)
         end = rows[0].shape[1] - top
-        yield points, *(Quasipolynomials(x[:, :end, points], y.delays[:, points]) for x, y in zip(rows, (A, B)))
+        above, below = (
+            Quasipolynomials(x[:, :end, points], y.delays[:, points]) for x, y in zip(rows, (A, B), strict=True)
+        )
+        yield points, above, below
 
 
 def shared_at_origin(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarray:

@@ -26,11 +26,11 @@ def stability_map(loop: object, **values: ArrayLike) -> np.ndarray:
         **values: the values of the two symbols by their names, one-dimensional arrays.
     Returns:
         An array of integers, with a row for each value of the second symbol and a column for each of the first; -1
-        on the limit of stability or so close to it that it is not decided, and ``10**9`` where there are infinitely many
-        unstable poles.
+        on the limit of stability or so close to it that it is not decided, and ``10**9`` where there are infinitely
+        many unstable poles.
     Raises:
-        ValueError: for other symbols than two with values, a negative dead time, a loop that is improper or loses its
-            highest power at a point, or as `unstable_roots`.
+        ValueError: for other symbols than two with values, a negative dead time, a loop that is improper, or as
+            `unstable_roots`.
 
     >>> import sympy
     >>> K, delay = sympy.symbols("K delay")

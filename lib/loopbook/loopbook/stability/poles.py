@@ -65,7 +65,7 @@ def dominant_roots(parts: Quasipolynomial, count: int | None, name: str, removab
     else:
         count = 2 if count is None else count
         sums = Quasipolynomials.exact(parts, len(parts[0]) - 1, parts[0][-1])
-        found = sorted(_of_sum(sums, count + removable, name), key=abs)[removable:]
+        found = _of_sum(sums, count, name, removable)
     upper = [p for p in found if p.imag >= 0]
     poles = [q for p in sorted(upper, key=lambda p: (-p.real, p.imag)) for q in ([p, p.conjugate()] if p.imag else [p])]
     end = count + 1 if len(poles) > count and poles[count - 1].imag > 0 else count
@@ -84,28 +84,27 @@ def roots_right_of(sums: Quasipolynomials, left: float, most: int, removable: in
     if not np.isfinite(shifted.coefficients).all() or math.isnan(prevailing(shifted.coefficients)[0]):
         return None  # infinite rows of roots come as far as that
     try:
-        number = int(count_roots(shifted)[0])
+        number = int(count_roots(shifted)[0]) - removable
     except ValueError:
         return None
-    if not removable <= number <= most:
+    if not 0 <= number <= most:
         return None
-    found = _inside(sums, left, -left / 2 if removable else 0.0, number) if number else []
-    right = sum(2 if p.imag else 1 for p in found) == number
-    found = sorted(found, key=abs)[removable:]
-    return found if right and len(set(found)) == len(found) else None
+    found = _inside(sums, left, 0.0, number, removable) if number else []
+    right = sum(2 if p.imag else 1 for p in found) == number and len(set(found)) == len(found)
+    return found if right else None
 
 
-def _of_sum(sums, count, name):
+def _of_sum(sums, count, name, removable):
     """The roots right of a line that has at least `count` of them on its right."""
-    right, left, most = _strip(sums, 1 / float(sums.delays.max()), count, name)
+    right, left, most = _strip(sums, 1 / float(sums.delays.max()), count, name, removable)
     for attempt in range(1, MOST_TRIES + 1):
-        found = _inside(sums, left, right, most)
+        found = _inside(sums, left, right, most, removable)
         number = sum(2 if p.imag else 1 for p in found)
         if number == most:
             return found
         if attempt < MOST_TRIES:  # the line may pass too close to some of them
             left -= 0.07 * attempt * (right - left)
-            most = _right_of(sums, left)
+            most = _right_of(sums, left, removable)
     raise ValueError(f"{most} poles of {name} are known to lie right of {left:.6g}, but {number} were found")
 
 
@@ -119,18 +118,18 @@ def _of_polynomial(polynomial):
     ]
 
 
-def _strip(sums, unit, count, name):
+def _strip(sums, unit, count, name, removable):
     """Real parts right and left of the poles that are wanted, and how many lie between them."""
     right, left = 0.37 * unit, -0.63 * unit  # no round numbers: on these lines poles of made-up loops like to lie
-    while _right_of(sums, right):
+    while _right_of(sums, right, removable):
         right *= 2
-    while (most := _right_of(sums, left)) < count:
+    while (most := _right_of(sums, left, removable)) < count:
         left *= 2
     inner = right
     for _ in range(12):  # as few more as possible
         middle = (inner + left) / 2
         try:
-            between = _right_of(sums, middle)
+            between = _right_of(sums, middle, removable)
         except ValueError:  # too close to a multiple root
             break
         if between < count:
@@ -142,12 +141,15 @@ def _strip(sums, unit, count, name):
     return right, left, most
 
 
-def _right_of(sums, real_part):
-    """The number of roots to the right of a line, which moves a little to the left if some lie on it."""
+def _right_of(sums, real_part, removable):
+    """The number of roots to the right of a line, which moves a little to the left if some lie on it.
+
+    So many at zero do not count.
+    """
     for _ in range(5):
         number = int(count_roots(_shifted(sums, real_part))[0])
         if number != ON_LIMIT:
-            return number
+            return number - removable if real_part < 0 and number != ENDLESS else number
         real_part -= 1e-7 * abs(real_part)
     raise ValueError(f"roots lie too close to the line of the real part {real_part:g}")
 
@@ -160,8 +162,11 @@ def _shifted(sums, real_part):
     return Quasipolynomials(coefficients * np.exp(-sums.delays * real_part)[:, None], sums.delays)
 
 
-def _inside(sums, left, right, most):
-    """Roots with real parts from left to right, by Newton's method, from ever finer grids until `most` are found."""
+def _inside(sums, left, right, most, removable=0):
+    """Roots with real parts from left to right, by Newton's method, from ever finer grids until `most` are found.
+
+    So many at zero are divided out.
+    """
     top = float(prevailing(_shifted(sums, left).coefficients)[0])
     if not math.isfinite(top):
         raise ValueError(f"how far the poles right of {left:.6g} reach is not known: expected fewer to be wanted")
@@ -174,7 +179,7 @@ def _inside(sums, left, right, most):
             1e-3 * min(right - left, top), top, SLOW * refinement
         )  # roots may be of very different sizes
         x, y = np.meshgrid(np.linspace(left, right, columns), np.r_[np.linspace(0, top, rows), slow])
-        points, rest = _newton(sums, derivative, (x + 1j * y).ravel())
+        points, rest = _newton(sums, derivative, (x + 1j * y).ravel(), removable)
         inside = (points.real > left) & (points.real < right) & (points.imag > -1e-9 * top)
         points, rest, size = points[inside], rest[inside], np.maximum(abs(points[inside]), 1e-9 * top)
         there = rest <= 1e-5 * np.minimum(size, right - left)
@@ -184,22 +189,28 @@ def _inside(sums, left, right, most):
                 p = points[k]
                 if there[k] and all(abs(p - q) > close * size[k] for q in distinct):
                     distinct.append(complex(p.real, 0.0 if abs(p.imag) < flat * size[k] else p.imag))
-            found = [p for p in distinct for _ in range(_multiplicity(sums, derivative, p, distinct, top))]
+            apart = [*distinct, *[0j][:removable]]
+            found = [p for p in distinct for _ in range(_multiplicity(sums, derivative, p, apart, top))]
             if sum(2 if p.imag else 1 for p in found) == most:
                 return found
     return found
 
 
-def _newton(sums, derivative, points):
+def _newton(sums, derivative, points, removable):
     """Where Newton's method leads from many points, and how long its next step would be."""
+
+    def change(points):
+        slope = derivative.at(points) / sums.at(points)
+        return 1 / (slope - removable / points if removable else slope)
+
     with np.errstate(all="ignore"):
         for _ in range(60):
-            change = sums.at(points) / derivative.at(points)
-            points = points - change
+            step = change(points)
+            points = points - step
             points = points[np.isfinite(points)]
-            if not len(points) or (abs(change) <= 1e-14 * (1 + abs(change.real))).all():
+            if not len(points) or (abs(step) <= 1e-14 * (1 + abs(step.real))).all():
                 break
-        rest = abs(sums.at(points) / derivative.at(points))
+        rest = abs(change(points))
     return points, rest
 
 

@@ -17,7 +17,7 @@ MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is 
 
 
 def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarray:
-    """Return Ms for many loops L = A/B at once, certified as `margins` does; nan for those that are not stable.
+    """Return Ms for many loops L = A/B at once, validated as `margins` does; nan for those that are not stable.
 
     Arguments:
         A, B: numerators and denominators, with as many powers, as `Quasipolynomials`; B may be a single one.
@@ -31,11 +31,11 @@ def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarra
     [1.307, 1.59, nan]
     """
     found = np.full(max(A.count, B.count), math.nan)
-    for points, above, below in of_one_order(A, B):
-        stable = np.flatnonzero(count_closed(above, below) == 0)
+    for points, numerators, denominators in of_one_order(A, B):
+        stable = np.flatnonzero(count_closed(numerators, denominators) == 0)
         for start in range(0, len(stable), AT_ONCE):
             some = stable[start : start + AT_ONCE]
-            found[points[some]] = _largest(Loops(above[some], below[some]))
+            found[points[some]] = _largest(Loops(numerators[some], denominators[some]))
     return found
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import math
-import random
 import re
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
 import sympy
 
 from exercisebook import grammar, units
@@ -22,7 +21,7 @@ from exercisebook.kinds.numeric import in_digits, near, one_number
 from exercisebook.reading import alone, answered, in_a_row, listed_in
 from exercisebook.wholes import Whole
 from loopbook.pid import PID
-from plainmath.expressions import exact
+from plainmath.expressions import exact, parse, s
 from plainmath.validation import one_of
 
 NAMES = ("Kp", "Ti", "Td", "Tf")
@@ -103,7 +102,7 @@ class Settings(Kind):
         books. The gains Ki and Kd of a controller whose terms are added become times. A transfer function with numbers,
         2*(1 + 1/(10*s)), is recognised as well.
         """
-        if controller := _of_transfer_function(answered(given), self.seed):
+        if controller := _of_transfer_function(answered(given)):
             controller = self._in_asked_form(controller)
             return controller, f"read as {self.written(controller)}"
         if isinstance(given, set | frozenset | sympy.FiniteSet) and len(given) > 1:
@@ -313,6 +312,7 @@ _OTHER_NAMES = {
     "kp": "Kp", "kc": "Kp", "k": "Kp", "gain": "Kp", "p": "Kp", "ti": "Ti", "taui": "Ti", "td": "Td", "taud": "Td",
     "tf": "Tf", "tauf": "Tf", "form": "form", "ki": "Ki", "kd": "Kd", "integraltime": "Ti", "derivativetime": "Td",
     "proportionalgain": "Kp", "controllergain": "Kp", "integralgain": "Ki", "derivativegain": "Kd", "resettime": "Ti",
+    "kr": "Kp", "tn": "Ti", "tv": "Td",
 }  # fmt: skip
 _CONTROLLER = r"(?:(?:an?|the) )?(?:PID?|PD|P|controller|settings)(?:[ -](?:controller|settings))?"
 _CALL = re.compile(rf"(?:{_CONTROLLER})? ?\((.*)\)", re.IGNORECASE | re.DOTALL)
@@ -368,7 +368,7 @@ def _of_text(text):
     """
     if len(text) > LONGEST:
         return None
-    text = " ".join(re.sub(r"^\{|\}$|\$|\\(?=[,;!: ])|\\(?=[A-Za-z]\w*\s*=)", " ", text.strip()).split()).rstrip(".")
+    text = " ".join(re.sub(r"^\{|\}$|\$|\\[,;!: ]|\\(?=[A-Za-z]\w*\s*=)", " ", text.strip()).split()).rstrip(".")
     text = re.sub(r"^(?:in )?(?:the )?(serial|series|cascade|parallel|ideal)(?: form)? ?[:,] ?(.*)$", r"\2 (\1)", text)
     form = _FORM.search(text)
     text = _FORM.sub("", text)
@@ -412,49 +412,35 @@ def _by_our_names(given):
 
 #: As much of one as a number can be of it: not of 0, and of no length without end.
 _FRACTION = re.compile(r"-?[0-9]{1,300}/[1-9][0-9]{0,6}")
-#: So many values of s tell the settings of a formula, and as many others confirm them.
-_MOST_POINTS = 30
+#: A formula of a controller has so many parts at most.
+_MOST_PARTS = 200
 
 
-def _points(text):
-    """Values of s in the whole plane, at which each of three terms and a filter shows itself beside the others."""
-    dice = random.Random(text)
-    sizes = np.geomspace(1e-6, 1e3, _MOST_POINTS) * [dice.uniform(0.8, 1.25) for _ in range(_MOST_POINTS)]
-    return sizes * np.exp(1j * np.array([dice.uniform(-3, 3) for _ in sizes]))
-
-
-@np.errstate(all="ignore")
-def _of_transfer_function(given, seed):
+def _of_transfer_function(given):
     """The settings, in parallel form, of a transfer function with numbers; None where it is no PID controller.
 
-    Times s and with the filter's denominator it is a polynomial, c0 + c1 s + c2 s².
+    Without common factors it is (c0 + c1 s + c2 s²)/(s (1 + Tf s)).
     """
     if isinstance(given, PID | dict) or in_a_row(given) is not None:
         return None
     try:
         formula = Formula(given, "s")
-    except Unreadable:
+        parts = list(itertools.islice(ast.walk(formula.tree), _MOST_PARTS + 1))
+        is_simple = len(parts) <= _MOST_PARTS and any(isinstance(part, ast.Name) and part.id == "s" for part in parts)
+        if not is_simple:  # a number alone tells no controller
+            return None
+        above, below = (sympy.Poly(part, s) for part in sympy.fraction(sympy.cancel(parse(formula.text))))
+    except (ValueError, sympy.PolynomialError):
         return None
-    if formula.decides or not re.search(r"\bs\b", formula.text):  # a number alone tells no controller
+    if below.eval(0):
+        above, below = above * s, below * s
+    if max(above.degree(), below.degree()) > 2 or not below.coeff_monomial(s):
         return None
-    # drawn from what nobody knows who wrote the formula, and from the formula
-    points = {"s": np.concatenate([_points(f"{seed}\n{formula.text}\n{k}") for k in range(2)])}
-    at = points["s"]
-    times_s = at * formula.values_at(points)
-    if not np.isfinite(times_s).all() or not np.all(times_s):
+    terms = [above.coeff_monomial(s**k) for k in range(3)] + [below.coeff_monomial(s**2)]
+    try:
+        return _with_terms(*(float(term / below.coeff_monomial(s)) for term in terms))
+    except TypeError:  # a complex number
         return None
-    terms = np.stack([at**0, at, at**2, -at * times_s]) / times_s
-    first = np.arange(len(at)) < _MOST_POINTS
-    for count in (3, 4):  # without a filter, or with one
-        size = np.abs(terms[:count, first]).max(axis=1)
-        scaled = terms[:count].T / size
-        system = np.concatenate([scaled[first].real, scaled[first].imag])
-        ones = np.concatenate([np.ones(_MOST_POINTS), np.zeros(_MOST_POINTS)])
-        parts = np.linalg.lstsq(system, ones, rcond=None)[0]
-        if np.allclose(system @ parts, ones, rtol=0, atol=1e-8) and np.allclose(scaled @ parts, 1, rtol=0, atol=1e-7):
-            parts[np.abs(parts) < 1e-8] = 0
-            return _with_terms(*map(float, parts / size), *[0.0][: 4 - count])
-    return None
 
 
 def _doubt(given):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from loopbook.deadtime import Loop
 from loopbook.figures import time_plot
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.transfer import integrator
 

@@ -3,9 +3,9 @@
 import numpy as np
 from sympy import exp
 
-from loopbook.deadtime import Loop
 from loopbook.expressions import s
 from loopbook.figures import time_plot
+from loopbook.loops import Loop
 from loopbook.pid import PID
 
 

@@ -3,9 +3,9 @@
 import numpy as np
 from sympy import Rational
 
-from loopbook.deadtime import Loop
 from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
 from loopbook.figures import time_plot
+from loopbook.loops import Loop
 from loopbook.stability import delay_margin, ultimate
 from loopbook.transfer import first_order
 

@@ -5,8 +5,8 @@ from functools import lru_cache
 import numpy as np
 from sympy import Rational
 
-from loopbook.deadtime import Loop
 from loopbook.figures import time_plot
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.signals import stepwise
 from loopbook.transfer import first_order

@@ -5,10 +5,10 @@ from functools import lru_cache
 import numpy as np
 from sympy import exp
 
-from loopbook.deadtime import Loop
 from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
 from loopbook.expressions import s
 from loopbook.figures import time_plot
+from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.signals import stepwise
 from loopbook.stability import is_closed_loop_stable

@@ -8,7 +8,7 @@ from loopbook import Loop, first_order
 from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
 from loopbook.exercises.bank.ch17_dead_time_compensation.shared import times_until
 from loopbook.figures import time_plot
-from loopbook.ise import pi_first_order
+from loopbook.integrals import pi_first_order
 
 
 def _M(K, T, off, pid, w):

@@ -7,7 +7,7 @@ import numpy as np
 from loopbook import Loop, first_order
 from loopbook.exercises.authoring import criterion, design, largest_sensitivity, pi_controller, settings, stable
 from loopbook.figures import time_plot
-from loopbook.ise import pi_first_order
+from loopbook.integrals import pi_first_order
 
 
 def quick_and_robust(K, T, delay, controller, limit):

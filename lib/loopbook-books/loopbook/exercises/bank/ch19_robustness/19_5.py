@@ -6,7 +6,7 @@ import numpy as np
 
 from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
 from loopbook.exercises.bank.ch19_robustness.shared import robustness_plot
-from loopbook.ise import pi_first_order
+from loopbook.integrals import pi_first_order
 from loopbook.stability import robustness_pi_first_order
 
 

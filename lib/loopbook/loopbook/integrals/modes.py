@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loopbook.ise.error import ErrorFraction
+from loopbook.integrals.error import ErrorFraction
 from loopbook.stability.poles import roots_right_of
 
 DIGITS = 40

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.ise.error import UnstableLoopError
-from loopbook.ise.loops import integral_of_square
-from loopbook.ise.residues import sums_of_residues
+from loopbook.integrals.error import UnstableLoopError
+from loopbook.integrals.loops import integral_of_square
+from loopbook.integrals.residues import sums_of_residues
 from loopbook.quasipolynomials.symbols import fraction_of
 from loopbook.stability.counting import ON_LIMIT, count_roots
 from loopbook.stability.enclosures import UndecidedError

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.deadtime.loop import MODES
-from loopbook.ise.error import UnstableLoopError
+from loopbook.integrals.error import MODES, UnstableLoopError
 from plainmath.validation import one_of
 
 if TYPE_CHECKING:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
-from loopbook.ise.residues import by_residues
-from loopbook.ise.responses import by_response
+from loopbook.integrals.error import ErrorFraction, NotApplicableError, error_of
+from loopbook.integrals.residues import by_residues
+from loopbook.integrals.responses import by_response
 from plainmath.validation import one_of
 
 __all__ = ["integral_of_square", "ise"]
@@ -22,7 +22,7 @@ def ise(
     """Return the integral of the squared control error after a unit step, with exact dead time.
 
     Arguments:
-        process, controller, from_setpoint: as for `deadtime.Loop`; or a loop alone in place of the process.
+        process, controller, from_setpoint: as for `loops.Loop`; or a loop alone in place of the process.
         mode: "servo" for a step of the setpoint, "regulator" for one of the load at the process input.
         method: as for `integral_of_square`.
     Returns:

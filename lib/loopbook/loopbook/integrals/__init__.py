@@ -6,11 +6,11 @@ any dead times it is that over the exact response, followed until its slowest mo
 for stable loops only, and is plausible but wrong for others: hence the proof of stability before it.
 """
 
-from loopbook.ise.closed_form import pi_first_order
-from loopbook.ise.error import UnstableLoopError
-from loopbook.ise.loops import integral_of_square, ise
-from loopbook.ise.residue_method import ResidueMethod, residue_method
-from loopbook.ise.responses import Criteria, criteria
+from loopbook.integrals.closed_form import pi_first_order
+from loopbook.integrals.error import UnstableLoopError
+from loopbook.integrals.loops import integral_of_square, ise
+from loopbook.integrals.residue_method import ResidueMethod, residue_method
+from loopbook.integrals.responses import Criteria, criteria
 
 __all__ = [
     "Criteria", "ResidueMethod", "UnstableLoopError", "criteria", "integral_of_square", "ise", "pi_first_order",

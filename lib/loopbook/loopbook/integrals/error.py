@@ -7,15 +7,23 @@ from fractions import Fraction
 
 import numpy as np
 
-from loopbook.deadtime import Loop
+from loopbook.deadtime.system import return_difference
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, taylor_coefficient
+from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, plus, taylor_coefficient, times
 from loopbook.stability import StabilityLimitError, unstable_roots
+from loopbook.transfer import transfer_function
+from plainmath.expressions import s
+from plainmath.validation import one_of
 
-__all__ = ["ErrorFraction", "NotApplicableError", "UnstableLoopError", "error_of"]
+__all__ = [
+    "MODES", "ErrorFraction", "NotApplicableError", "UnstableLoopError", "blocks_of", "error_after_step", "error_of",
+]  # fmt: skip
+
+MODES = ("servo", "regulator")
 
 ZERO = Fraction(0)
+STEP: Quasipolynomial = {ZERO: (0, 1)}  # what a transfer function is divided by for a step
 
 
 class UnstableLoopError(ValueError):
@@ -28,15 +36,40 @@ class NotApplicableError(Exception):
 
 def error_of(process: object, controller: object, mode: str, from_setpoint: object) -> DelayFraction:
     """E(s) of a loop for a unit step, with common factors cancelled once."""
-    if isinstance(process, Loop):
+    if hasattr(process, "error"):
         if controller is not None or from_setpoint is not None:
             raise ValueError("a loop has its controller already: expected no other one")
-        loop = process
-    elif controller is None:
+        return process.error(mode)
+    if controller is None:
         raise ValueError("the controller is missing: expected one, or a loop in place of the process")
-    else:
-        loop = Loop(process, controller, from_setpoint)
-    return loop.error(mode)
+    blocks = blocks_of(process, controller, controller if from_setpoint is None else from_setpoint)
+    return error_after_step(*blocks, mode)
+
+
+def blocks_of(*given: object) -> list[DelayFraction]:
+    """Process, controller and what is between setpoint and control signal, as fractions without common factors."""
+    try:
+        return [DelayFraction.coprime(x.numerator, x.denominator) for x in map(read, given)]
+    except ValueError:
+        blocks = [transfer_function(x) for x in given]
+        if symbols := sorted(map(str, set().union(*(x.free_symbols for x in blocks)) - {s})):
+            raise ValueError(f"give a number for {', '.join(symbols)} in the loop of {blocks[0]}") from None
+        raise
+
+
+def error_after_step(P: DelayFraction, C: DelayFraction, R: DelayFraction, mode: str) -> DelayFraction:
+    """E(s) of the loop of these blocks for a unit step, with common factors cancelled once."""
+    L = C * P
+    difference = return_difference(L)
+    returned = times(STEP, difference.numerator)
+    if one_of("the mode", mode, MODES) == "regulator":
+        return DelayFraction(plus({}, times(P.numerator, L.denominator), -1), times(P.denominator, returned))
+    if C == R:
+        return DelayFraction(L.denominator, returned)
+    # 1/(1 + L) - (R/C) L/(1 + L), over the denominator of R P
+    own = times(R.denominator, P.denominator)
+    through = times(times(R.numerator, P.numerator), L.denominator)
+    return DelayFraction(plus(times(difference.numerator, own), through, -1), times(own, returned))
 
 
 @dataclass(frozen=True)

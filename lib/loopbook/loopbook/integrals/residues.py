@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from loopbook.ise.error import ErrorFraction, NotApplicableError
-from loopbook.ise.residue_method import both_residues
+from loopbook.integrals.error import ErrorFraction, NotApplicableError
+from loopbook.integrals.residue_method import both_residues
 
 __all__ = ["by_residues", "sums_of_residues"]
 

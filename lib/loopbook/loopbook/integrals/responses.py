@@ -9,8 +9,8 @@ from numpy.polynomial import legendre
 
 from loopbook.deadtime import System
 from loopbook.deadtime.step_info import zeros_of
-from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
-from loopbook.ise.modes import FEW_MODES, MOST_MODES, ManyModesError, slow_modes
+from loopbook.integrals.error import ErrorFraction, NotApplicableError, error_of
+from loopbook.integrals.modes import FEW_MODES, MOST_MODES, ManyModesError, slow_modes
 from loopbook.quasipolynomials import read
 from plainmath.expressions import s
 from plainmath.validation import number

@@ -3,31 +3,33 @@
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass
-from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 import sympy
 
-from loopbook.deadtime.system import System, return_difference
+from loopbook.deadtime import System
+from loopbook.deadtime.system import return_difference
+from loopbook.integrals import Criteria, criteria, ise
+from loopbook.integrals.error import MODES, blocks_of, error_after_step
 from loopbook.laplace import evaluate
-from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, times
+from loopbook.pid import PID
+from loopbook.quasipolynomials import DelayFraction
 from loopbook.stability import Margins, dominant_poles, is_stable, margins
 from loopbook.transfer import transfer_function
-from plainmath.expressions import function_of, s, t
+from plainmath.expressions import function_of, t
 from plainmath.validation import did_you_mean, one_of, times_from_zero
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from loopbook.deadtime import Response
     from loopbook.figures import Picture, PlanePlot, TimePlot
+    from loopbook.types import TransferFunctionLike
 
-__all__ = ["MODES", "Loop", "LoopResponse"]
-
-MODES = ("servo", "regulator")
-STEP: Quasipolynomial = {Fraction(0): (0, 1)}  # what a transfer function is divided by for a step
+__all__ = ["Loop", "LoopResponse"]
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,34 +81,36 @@ class Loop:
         controller: C, a `PID`, or as the process; it may be improper where the loop is not.
         from_setpoint: R, from the setpoint to the control signal, as with setpoint weights; equal to C if not given.
     Attributes:
-        process, controller, from_setpoint, open: P, C, R and the open loop L = C P, expressions in `s`.
+        controller: C, the `PID` that was given, or what else was as a `System` (a fraction where it is improper).
+        process, from_setpoint, open: P, R and the open loop C P, expressions in `s`.
         process_fraction, controller_fraction, setpoint_fraction, open_fraction: the same as fractions of sums of
             polynomials with dead times.
-        S, T, PS, CS: each a `System`.
+        L, S, T, PS, CS: the open and the closed loops, each a `System`.
         servo, regulator: `System` from the setpoint to y, and from the load to y.
         setpoint_to_control, load_to_control: `System` from the setpoint to u, and from the load to u.
     Raises:
         ValueError: for symbols, an algebraic loop without solution, or what is no `System`.
 
-    >>> from loopbook.pid import PID
-    >>> loop = Loop(2 * sympy.exp(-s) / (4 * s + 1), PID(1, Ti=4))
+    Loops are equal where their blocks are, however they were written.
+
+    >>> from loopbook import first_order
+    >>> loop = Loop(first_order(2, 4, delay=1), PID(1, Ti=4))
+    >>> loop
+    Loop(2*exp(-s)/(4*s + 1), PID(Kp=1, Ti=4))
     >>> loop.servo
     System(exp(-s)/(2*s + exp(-s)))
-    >>> loop.S
-    System(2*s/(2*s + exp(-s)))
+    >>> loop == Loop(first_order(2, 4, delay=1), loop.controller.expr)
+    True
     """
 
-    def __init__(self, process: object, controller: object, from_setpoint: object = None):
+    def __init__(
+        self,
+        process: TransferFunctionLike,
+        controller: TransferFunctionLike,
+        from_setpoint: TransferFunctionLike | None = None,
+    ):
         self._given = process, controller, controller if from_setpoint is None else from_setpoint
-        try:
-            self.process_fraction, self.controller_fraction, self.setpoint_fraction = (
-                DelayFraction.coprime(x.numerator, x.denominator) for x in map(read, self._given)
-            )
-        except ValueError:
-            blocks = [transfer_function(x) for x in self._given]
-            if symbols := sorted(map(str, set().union(*(x.free_symbols for x in blocks)) - {s})):
-                raise ValueError(f"give a number for {', '.join(symbols)} in the loop of {blocks[0]}") from None
-            raise
+        self.process_fraction, self.controller_fraction, self.setpoint_fraction = blocks_of(*self._given)
         self.open_fraction = self.controller_fraction * self.process_fraction
         self._difference = return_difference(self.open_fraction)
 
@@ -115,8 +119,9 @@ class Loop:
         return transfer_function(self._given[0])
 
     @functools.cached_property
-    def controller(self) -> sympy.Expr:
-        return transfer_function(self._given[1])
+    def controller(self) -> PID | DelayFraction:
+        given, fraction = self._given[1], self.controller_fraction
+        return given if isinstance(given, PID) else System(fraction) if fraction.is_proper else fraction
 
     @functools.cached_property
     def from_setpoint(self) -> sympy.Expr:
@@ -124,12 +129,28 @@ class Loop:
 
     @functools.cached_property
     def open(self) -> sympy.Expr:
-        return self.controller * self.process
+        return transfer_function(self._given[1]) * self.process
 
     def __repr__(self) -> str:
-        return f"Loop({self.process}, {self.controller})"
+        controller, R = (x if isinstance(x, PID) else transfer_function(x) for x in self._given[1:])
+        same = self.setpoint_fraction == self.controller_fraction
+        return f"Loop({self.process}, {controller}{'' if same else f', {R}'})"
 
-    # ---- closed loops
+    @property
+    def _blocks(self) -> tuple[DelayFraction, ...]:
+        return self.process_fraction, self.controller_fraction, self.setpoint_fraction
+
+    def __eq__(self, other: object) -> bool:
+        return self._blocks == other._blocks if isinstance(other, Loop) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._blocks)
+
+    # ---- open and closed loops
+
+    @functools.cached_property
+    def L(self) -> System:
+        return System(self.open_fraction)
 
     def _closed(self, forward: DelayFraction) -> System:
         return System(forward / self._difference)
@@ -171,22 +192,11 @@ class Loop:
     def error(self, mode: str) -> System:
         """Return E(s), the control error y_SP - y for a unit step of the setpoint ("servo") or load ("regulator").
 
-        >>> from loopbook.pid import PID
+        >>> from loopbook import s
         >>> Loop(1 / s, PID(2)).error("servo")
         System(1/(s + 2))
         """
-        P, R, L = self.process_fraction, self.setpoint_fraction, self.open_fraction
-        returned = times(STEP, plus(L.denominator, L.numerator))  # common factors are cancelled once
-        if one_of("the mode", mode, MODES) == "regulator":
-            above = plus({}, times(P.numerator, L.denominator), -1)
-            return System(DelayFraction(above, times(P.denominator, returned)))
-        if self.controller_fraction == R:
-            return System(DelayFraction(L.denominator, returned))
-        # 1/(1 + L) - (R/C) L/(1 + L), over the denominator of R P
-        own = times(R.denominator, P.denominator)
-        through = times(times(R.numerator, P.numerator), L.denominator)
-        above = plus(times(plus(L.denominator, L.numerator), own), through, -1)
-        return System(DelayFraction(above, times(own, returned)))
+        return System(error_after_step(*self._blocks, mode))
 
     # ---- stability
 
@@ -194,6 +204,7 @@ class Loop:
     def is_stable(self) -> bool:
         """Whether the loop is internally stable: a pole that controller and process cancel counts, too.
 
+        >>> from loopbook import s
         >>> Loop(1 / (s - 1), 2 * (s - 1) / (s + 1)).is_stable
         False
         """
@@ -202,6 +213,7 @@ class Loop:
     def poles(self, count: int = 2) -> list[complex]:
         """Return the dominant poles of the closed loop, as `stability.dominant_poles` does.
 
+        >>> from loopbook import s
         >>> Loop(1 / s, 2).poles()
         [(-2+0j)]
         """
@@ -210,11 +222,48 @@ class Loop:
     def margins(self) -> Margins:
         """Return gain margin, phase margin, delay margin and Ms, as `stability.margins` does for the open loop.
 
-        >>> from loopbook.pid import PID
+        >>> from loopbook import s
         >>> round(Loop(sympy.exp(-s) / s, PID(1)).margins().gain_margin, 4)    # pi/2
         1.5708
         """
         return margins(self)
+
+    @functools.cached_property
+    def Ms(self) -> float:
+        """The largest sensitivity, the largest value of abs(1/(1 + L)), as in `margins`; infinite if not stable.
+
+        >>> from loopbook import s
+        >>> round(Loop(sympy.exp(-s) / s, PID(0.5)).Ms, 4), Loop(sympy.exp(-s) / s, PID(2)).Ms
+        (1.5905, inf)
+        """
+        return self.margins().Ms if self.is_stable else math.inf
+
+    # ---- integral criteria
+
+    def ise(self, mode: str = "servo") -> float:
+        """Return the integral of the squared control error after a unit step, as `integrals.ise` does.
+
+        Arguments:
+            mode: "servo" for a step of the setpoint, "regulator" for one of the load at the process input.
+
+        >>> from loopbook import first_order
+        >>> round(Loop(first_order(1, 1, delay=0.5), PID(1, Ti=1)).ise(), 6)
+        0.842898
+        """
+        return ise(self, mode=mode)
+
+    def criteria(self, mode: str = "servo", tolerance: float = 1e-9) -> Criteria:
+        """Return ISE, IAE, ITAE and ITSE of the control error after a unit step, as `integrals.criteria` does.
+
+        Arguments:
+            mode: as for `ise`.
+            tolerance: the share of each integral that may be left out.
+
+        >>> from loopbook import s
+        >>> [round(value, 6) for value in Loop(1 / s, 1).criteria()]
+        [0.5, 1.0, 1.0, 0.25]
+        """
+        return criteria(self, mode=mode, tolerance=tolerance)
 
     # ---- pictures
 
@@ -223,8 +272,9 @@ class Loop:
 
         Arguments:
             omega: the lowest and the highest frequency; by themselves a decade around the corner frequencies.
-            options: title, unit of time, decibels, as `pictures.bode_plot` takes them.
+            options: title, unit of time, decibels, axes of one's own, as `pictures.bode_plot` takes them.
 
+        >>> from loopbook import s
         >>> Loop(sympy.exp(-s) / s, sympy.Rational(1, 2)).bode()
         <magnitude and phase [deg] against omega [rad/s]; gain margin 3.14, phase margin 61.4°>
         """
@@ -235,6 +285,7 @@ class Loop:
     def nyquist(self, omega: ArrayLike | None = None, **options: object) -> PlanePlot:
         """Plot the open loop in the complex plane, as `pictures.nyquist_plot` does, with the margins as in `bode`.
 
+        >>> from loopbook import s
         >>> Loop(sympy.exp(-s) / s, sympy.Rational(1, 2)).nyquist()
         <imaginary part against real part; gain margin 3.14, phase margin 61.4°, Ms 1.59>
         """
@@ -247,8 +298,9 @@ class Loop:
 
         Arguments:
             end: the last time; by itself late enough for the response to settle.
-            options: title, unit of time, as `pictures.step_plot` takes them.
+            options: title, unit of time, axes of one's own, as `pictures.step_plot` takes them.
 
+        >>> from loopbook import s
         >>> Loop(sympy.exp(-s) / s, sympy.Rational(1, 2)).plot_step()
         <setpoint, y(t); u(t) against t [s]; overshoot 4.05 %, rise time 1.91 s, settling time 6.06 s>
         """
@@ -257,6 +309,25 @@ class Loop:
         return step_plot(self, end, self.servo.step_info() if self.is_stable else None, **options)
 
     # ---- signals
+
+    @overload
+    def step(self, times: ArrayLike, mode: str = "servo") -> np.ndarray: ...
+    @overload
+    def step(self, times: None = None, mode: str = "servo") -> Response: ...
+    def step(self, times: ArrayLike | None = None, mode: str = "servo") -> np.ndarray | Response:
+        """Return the output y after a unit step, the loop at rest before, as `System.step` does.
+
+        Arguments:
+            times: a number or an array, not negative, in the unit of the lags.
+            mode: "servo" for a step of the setpoint, "regulator" for one of the load at the process input.
+        Returns:
+            An array of the shape of the times; without times a `deadtime.Response`, a function of time.
+
+        >>> from loopbook import s
+        >>> Loop(sympy.exp(-s) / s, PID(0.5)).step([2, 3])
+        array([0.5  , 0.875])
+        """
+        return getattr(self, one_of("the mode", mode, MODES)).step(times)
 
     def run(self, times: ArrayLike | None = None, setpoint: object = 1, load: object = 0) -> LoopResponse:
         """Return the signals of the loop for a setpoint and a load that change in time, the loop at rest before.
@@ -267,7 +338,7 @@ class Loop:
         Returns:
             A `LoopResponse`, which `figures.trends` draws.
 
-        >>> from loopbook.pid import PID
+        >>> from loopbook import s
         >>> Loop(sympy.exp(-s) / s, PID(0.5)).run([2, 3])["y"].round(6)
         array([0.5  , 0.875])
         """
