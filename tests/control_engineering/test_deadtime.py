@@ -61,6 +61,31 @@ def test_a_pi_loop_follows_its_series(K, T, Ti, delay):
         assert system.step(TIMES) == pytest.approx(expected, rel=1e-11, abs=1e-12 * max(1, abs(expected).max()))
 
 
+@pytest.mark.parametrize("n", [18, 40, 60])
+def test_high_orders(n):
+    """(s + 1)^-n answers a step with the lower gamma function; around it, by a series in the loop."""
+    times = np.array([0.2, 0.5, 1, 1.5, 2]) * n
+    process = DELAY / (s + 1) ** n
+    assert System(process).step(times) == pytest.approx(gammainc(n, times - 1), abs=1e-13)
+    half = sympy.Rational(1, 2)
+    expected = sum((-1) ** k / 2 ** (k + 1) * gammainc(n * (k + 1), np.maximum(times - k - 1, 0)) for k in range(8))
+    assert Loop(process, half).servo.step(times) == pytest.approx(expected, abs=1e-13)
+
+
+def test_lags_of_all_sizes_and_roots_at_zero_and_beyond():
+    lags = [sympy.Rational(round(10 ** (4 - k / 6)), 10**4) for k in range(24)]
+    many, times = sympy.prod([1 / (T * s + 1) for T in lags]), np.array([0.3, 1, 3, 10])
+    shares = [sympy.prod([T / (T - other) for other in lags if other != T]).evalf(60) for T in lags]
+    expected = [
+        1 - sum(share * sympy.exp(-x / T).evalf(60) for share, T in zip(shares, lags, strict=True))
+        for x in map(sympy.Rational, map(str, times))
+    ]
+    assert System(many).step(times) == pytest.approx(np.array(expected, float), rel=1e-12)
+    assert System(many / s**3).step(times) == pytest.approx(System(many).response(times, t**3 / 6), rel=1e-12)
+    beyond = System(1 / (s + 1) ** 20 / (s - 1))  # times s - 1 it is the lags
+    assert beyond.impulse(times) - beyond.step(times) == pytest.approx(gammainc(20, times), abs=1e-12)
+
+
 def test_dead_times_without_a_common_base():
     # 99/70 and 1 have the common base 1/70; exp(-sqrt(2) s) has none
     for late in (sympy.Rational(99, 70), sympy.sqrt(2)):

@@ -419,6 +419,19 @@ def test_it_says_why_every_method_declines(monkeypatch):
         integral_of_square(E)
 
 
+@pytest.mark.parametrize("n", [25, 40])
+def test_a_high_order(n):
+    loop = Loop(DELAY / (s + 1) ** n, PID(sympy.Rational(1, 5), Ti=20))
+
+    def density(x):  # |E|^2 over half a circle, w = tan(x/2)
+        p = 1j * np.tan(x / 2)
+        L = np.exp(-p) / (p + 1) ** n * (1 + 20 * p) / 100  # times p
+        return abs(1 / (p + L)) ** 2 / np.cos(x / 2) ** 2 / (2 * math.pi)
+
+    middles = math.pi * (np.arange(2000) + 0.5) / 2000
+    assert ise(loop) == pytest.approx(math.pi * density(middles).mean(), rel=1e-10)
+
+
 # ------------------------------------------------------------------------------------------------ no integral
 
 

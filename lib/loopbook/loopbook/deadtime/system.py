@@ -99,7 +99,9 @@ class System(DelayFraction):
 
     @property
     def is_stable(self) -> bool:
-        """Whether all poles lie in the left half-plane, proved; one on the imaginary axis is not stable.
+        """Whether all poles lie in the left half-plane, proved; with one on the imaginary axis, proved, it is not stable.
+
+        What is not decided is an UndecidedError that says at which frequencies.
 
         >>> System(1 / (s + 1)).is_stable, closed_loop(2 * sympy.exp(-s) / s).is_stable
         (True, False)
