@@ -99,7 +99,7 @@ class System(DelayFraction):
 
     @property
     def is_stable(self) -> bool:
-        """Whether all poles lie in the left half-plane, proved; with one on the imaginary axis, proved, it is not stable.
+        """Whether all poles lie in the left half-plane, proved; with one on the imaginary axis it is not stable.
 
         What is not decided is an UndecidedError that says at which frequencies.
 
