@@ -114,6 +114,12 @@ def test_each_is_a_root_and_as_many_are_unstable_as_the_argument_principle_says(
         assert min(unstable_closed_loop_poles(L), 5) <= sum(p.real > 0 for p in found)
 
 
+def test_a_pole_that_is_met_exactly():
+    found = dominant_poles((412 * s + 412) * dead_time(sympy.Rational(1, 8)) / (103 * s**2 + 512 * s), count=5)
+    assert len(found) == 5
+    assert found[0] == pytest.approx(-0.486642583628604)
+
+
 def test_what_has_no_answer_is_refused():
     with pytest.raises(ValueError, match="count is 0: expected a whole number, at least 1"):
         dominant_poles(1 / s, count=0)

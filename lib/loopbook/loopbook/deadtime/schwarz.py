@@ -1,4 +1,4 @@
-"""A state space of any order of fractions with one denominator: Schwarz's form, from Routh's array.
+"""State spaces of fractions with one denominator: the controllable canonical form, and Schwarz's for high orders.
 
 A companion form holds a polynomial by its coefficients, and those of (s + 1)^18 rounded to sixteen digits have roots up
 to 1.3, some of them in the right half-plane. Schwarz's matrix is skew but for one damping at the end, so that without
@@ -15,7 +15,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["schwarz_form"]
+__all__ = ["companion_form", "schwarz_form"]
 
 BITS = 64  # for each power of the denominator
 
@@ -69,6 +69,22 @@ def schwarz_form(below: Sequence[int], above: Sequence[Sequence[int]]) -> tuple[
                     rest[k - 2 * i] -= top * c
             C[number] = [c * unit for c, unit in zip(part, units, strict=False)]
     return A, C, direct
+
+
+def companion_form(below: Sequence[int], above: Sequence[Sequence[int]]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the same in the controllable canonical form, whose states are derivatives of one signal.
+
+    >>> A, C, D = companion_form([2, 3, 1], [[2]])
+    >>> A.tolist(), C.tolist(), D.tolist()
+    ([[0.0, 1.0], [-2.0, -3.0]], [[2.0, 0.0]], [0.0])
+    """
+    n, leading = len(below) - 1, below[-1]
+    rows = np.array([[c / leading for c in part] + [0.0] * (n + 1 - len(part)) for part in (below, *above)])
+    own, parts = rows[0, :n], rows[1:]
+    A = np.diag(np.ones(max(n - 1, 0)), 1)[:n, :n]
+    if n:
+        A[-1] = -own
+    return A, parts[:, :n] - parts[:, n:] * own, parts[:, n]
 
 
 def _moved(p, shift):

@@ -14,7 +14,7 @@ import sympy
 from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.deadtime.response import Response
-from loopbook.deadtime.schwarz import schwarz_form
+from loopbook.deadtime.schwarz import companion_form, schwarz_form
 from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_response, step_info
 from loopbook.deadtime.superposition import response_to_samples
 from loopbook.laplace import transform
@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 __all__ = ["System", "closed_loop"]
 
 DIFFERENTIATOR = read(s)
+
+#: From this order on a companion matrix loses too many digits.
+HIGH_ORDER = 12
 
 
 class System(DelayFraction):
@@ -340,7 +343,9 @@ class System(DelayFraction):
     # ---- other forms
 
     def state_space(self) -> ChannelModel:
-        """Return a state-space model with delay channels, in Schwarz's form, as `schwarz_form` says.
+        """Return a state-space model with delay channels, with balanced states.
+
+        It is the controllable canonical form; from order 12 on Schwarz's, which keeps its digits (see `schwarz_form`).
 
         Each dead time of the denominator is a channel that leads back to the states, and each one of the numerator a
         channel that leads to the output.
@@ -357,11 +362,13 @@ class System(DelayFraction):
         back = {delay: part for delay, part in self.denominator.items() if delay}
         ahead = {delay: part for delay, part in self.numerator.items() if delay}
         parts = [self.numerator.get(Fraction(0), ()), *back.values(), *ahead.values()]
-        A, C, D = schwarz_form(self.denominator[Fraction(0)], parts)
+        is_high = self.order >= HIGH_ORDER
+        A, C, D = (schwarz_form if is_high else companion_form)(self.denominator[Fraction(0)], parts)
         if len(A):
             with np.errstate(invalid="ignore"):  # SciPy makes integers of scales
                 closed = A.copy()
-                closed[-1] += abs(C[1 : 1 + len(back)]).sum(axis=0)
+                if is_high:
+                    closed[-1] += abs(C[1 : 1 + len(back)]).sum(axis=0)
                 _, (scale, _) = matrix_balance(closed, permute=False, separate=True)
             A, C = A * scale / scale[:, None], C * scale
         # into the states and what is direct goes u - what comes back

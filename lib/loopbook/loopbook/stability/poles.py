@@ -205,8 +205,8 @@ def _newton(sums, derivative, points, removable):
     """Where Newton's method leads from many points, and how long its next step would be."""
 
     def change(points):
-        slope = derivative.at(points) / sums.at(points)
-        return 1 / (slope - removable / points if removable else slope)
+        value, slope = sums.at(points), derivative.at(points)
+        return value / (slope - removable * value / points if removable else slope)  # zero where it is a root
 
     moving = np.arange(len(points))
     with np.errstate(all="ignore"):
