@@ -9,6 +9,7 @@ import pytest
 import sympy
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from draws import draws
 from loopbook import s
@@ -329,3 +330,14 @@ def test_many_loops_at_once_are_each_as_alone():
             assert found[k] == pytest.approx(margins(L).Ms, rel=1e-9)
         else:
             assert math.isnan(found[k])
+
+
+@pytest.mark.parametrize("n", [30, 40])
+def test_a_high_order_whose_numbers_are_small(n):
+    """In the unit of the fastest motion all values are about 1e-80 where L is negative."""
+    T, d, K, Ti = 3.3, 89.0, 0.048, 457.0
+    process = sympy.exp(-89 * s) / (R(33, 10) * s + 1) ** n
+    found = margins(Loop(process, PID(R(48, 1000), Ti=457)))
+    w = brentq(lambda w: math.pi / 2 + math.atan(w * Ti) - n * math.atan(w * T) - w * d, 1e-3, 0.04, xtol=1e-17)
+    size = K * math.hypot(1, 1 / (w * Ti)) / math.hypot(1, w * T) ** n
+    assert found.gain_margin == pytest.approx(1 / size, rel=1e-12)

@@ -656,7 +656,7 @@ def test_marks_in_a_map():
     assert stability_map(K / (s + d) ** 3, K=[7, 8, 9], d=[1, 2]).tolist() == [[0, -1, 2], [0, 0, 0]]
     neutral = stability_map(K * (s + 2) / (s + 1) * sympy.exp(-d * s), K=[0.4, 1, 3], d=[0, 1])
     assert neutral.tolist() == [[0, 0, 0], [0, -1, 10**9]]
-    assert stability_map(K / (d * s - 1) ** 3, K=[2, -2], d=[1, 0]).tolist() == [[1, 3], [0, 0]]  # of order 3 and 0
+    assert stability_map(K / (d * s - 1) ** 3, K=[2, -2], d=[1, 0]).tolist() == [[2, 3], [0, 0]]  # of order 3 and 0
 
 
 @pytest.mark.parametrize(

@@ -296,7 +296,8 @@ def _solved(loops, which, a, b, function, rising, w, precise):
         a[moving] = np.where(before, w[moving], a[moving])
         b[moving] = np.where(before, b[moving], w[moving])
         with np.errstate(divide="ignore", invalid="ignore"):
-            better = w[moving] - 2 * value * slope / (2 * slope * slope - value * bend)
+            step = value / slope  # no squares of values, which for a high order would be smaller than all numbers
+            better = w[moving] - 2 * step / (2 - step * (bend / slope))
         outside = ~((better >= a[moving]) & (better <= b[moving]))
         better[outside] = ((a + b) / 2)[moving][outside]
         change = abs(better - w[moving])

@@ -29,7 +29,7 @@ MOST_INTERVALS = 60_000  # in one walk, and for each point of many
 MORE_INTERVALS = 2_000
 MOST_AT_ONCE = 2**15
 MOST_EXACT = 3_000  # intervals that are looked at with more digits
-BITS = 256  # behind the binary point, of these
+BITS = 256  # at least, behind the binary point, of these
 NARROWEST = 1e-14  # the half width, as a share of the frequency, at which an interval is left undecided
 NOISY = 16  # times the rounding, below which a value is looked at with more digits
 
@@ -183,15 +183,21 @@ class Exact:
 
     def __init__(self, parts: dict[Fraction, tuple[int, ...]], order: int, divisor: int, unit: float):
         self.parts, self.order, self.divisor, self.unit = parts, order, divisor, unit
+        # behind the binary point: of a high order the lowest coefficient is small, and the values with it
+        down = divisor.bit_length() + order * math.log2(unit)
+        sizes = (
+            c.bit_length() + n * math.log2(unit) - down for part in parts.values() for n, c in enumerate(part) if c
+        )
+        self.bits = BITS + max(0, math.ceil(-min(sizes, default=0)))
 
     @functools.cached_property
     def _matrices(self):
         """For each part its dead time and the polynomials that, times ``exp(-delay*s)``, are the derivatives over k!.
 
-        The numbers are whole multiples of ``2**-BITS``.
+        The numbers are whole multiples of ``2**-bits``.
         """
         unit = Fraction(self.unit)
-        scale = 2**BITS / (Fraction(self.divisor) * unit**self.order)
+        scale = 2**self.bits / (Fraction(self.divisor) * unit**self.order)
         found = []
         for delay, part in self.parts.items():
             late = [(-delay) ** k / math.factorial(k) for k in range(DEGREE + 1)]
@@ -222,25 +228,26 @@ class Exact:
     def _column(self, frequency, degree):
         from mpmath import libmp
 
+        bits = self.bits
         mantissa, below = frequency.as_integer_ratio()
-        w = (mantissa << BITS) // below
-        square = -(w * w >> BITS)
+        w = (mantissa << bits) // below
+        square = -(w * w >> bits)
         totals = [[0, 0] for _ in range(degree + 1)]
         for delay, rows in self._matrices:
-            cos, sin = 1 << BITS, 0
+            cos, sin = 1 << bits, 0
             if delay:
-                angle = libmp.from_rational(mantissa * delay.numerator, below * delay.denominator, 2 * BITS)
-                cos, sin = (libmp.to_fixed(x, BITS) for x in libmp.mpf_cos_sin(angle, BITS + 16))
+                angle = libmp.from_rational(mantissa * delay.numerator, below * delay.denominator, 2 * bits)
+                cos, sin = (libmp.to_fixed(x, bits) for x in libmp.mpf_cos_sin(angle, bits + 16))
             for total, row in zip(totals, rows, strict=False):
                 even = odd = 0
                 for c in row[(len(row) - 1) // 2 * 2 :: -2]:
-                    even = (even * square >> BITS) + c
+                    even = (even * square >> bits) + c
                 for c in row[(len(row) // 2 * 2 - 1) :: -2] if len(row) > 1 else ():
-                    odd = (odd * square >> BITS) + c
-                odd = odd * w >> BITS
-                total[0] += even * cos + odd * sin >> BITS
-                total[1] += odd * cos - even * sin >> BITS
-        return [complex(real / (1 << BITS), imag / (1 << BITS)) * 1j**k for k, (real, imag) in enumerate(totals)]
+                    odd = (odd * square >> bits) + c
+                odd = odd * w >> bits
+                total[0] += even * cos + odd * sin >> bits
+                total[1] += odd * cos - even * sin >> bits
+        return [complex(real / (1 << bits), imag / (1 << bits)) * 1j**k for k, (real, imag) in enumerate(totals)]
 
 
 # ---- the walk
