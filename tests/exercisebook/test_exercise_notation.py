@@ -115,6 +115,7 @@ READ = {
             " | 2 A (h1^0.5 - h0^0.5)/Kv | 2A[√h_1-√h_0]/K_v"
         ),
     },
+    "ca": {"ca + 1": "ca + 1 | 1+ca | c_a + 1"},  # which is short for about
     "k K_c tau_1 tau_2": {
         "(tau_1 + tau_2)/(2*sqrt(tau_1*tau_2*(1 + k*K_c)))": (
             "(tau1+tau2)/(2 sqrt(tau1 tau2 (1+k Kc))) | (τ_1+τ_2)/(2√(τ_1τ_2(1+kK_c)))"
@@ -168,7 +169,7 @@ DOUBTFUL = {
         "K(s)": "may be a product", "k": "did you mean", "kS": "", "\\": "",
     },
     "x n m": {
-        "x^nm": "needs brackets",
+        "x^nm": "needs brackets", "2x10^3": "may be the symbol",
     },
 }  # fmt: skip
 NOT_READ = [(text, symbols, says) for symbols, rows in DOUBTFUL.items() for text, says in rows.items()]

@@ -33,6 +33,7 @@ from exercisebook.grammar import (
     leaves,
     negative,
     product,
+    sign_of,
     span,
 )
 from exercisebook.pages import conversion
@@ -229,22 +230,23 @@ class _Quantities(Reader):
         children = list(parsed.children)
         if children[0].data == "signed":  # -2 1/s
             tree = self._term(lark.Tree("term", [children[0].children[1], *children[1:]], parsed.meta))
-            return negative(tree) if children[0].children[0] != "+" else tree
+            return tree if sign_of(children[0].children[0]) == "+" else negative(tree)
         k = 1
         while k < len(children) - 1:
             before, sign, after = children[k - 1 : k + 2]
             *others, whole, above = [None, None, *(before.children if before.data == "row" else ())]
             others = others[2:]
             are_numbers = is_leaf(whole, "NUMBER") and is_leaf(above, "NUMBER") and sign == "/" and after.data == "row"
-            if are_numbers and above == "1" and not is_leaf(after.children[0], "NUMBER"):  # 20 1/min
+            below = _first(after)
+            if are_numbers and above == "1" and is_leaf(next(iter(leaves(after))), "NAME"):  # 20 1/min
                 children[k - 1] = lark.Tree("row", [*others, whole], before.meta)
-            elif are_numbers and all(map(str.isdigit, (whole, above, after.children[0]))):  # 1 1/2 min
+            elif are_numbers and is_leaf(below, "NUMBER") and all(map(str.isdigit, (whole, above, below))):  # 1 1/2 min
                 self.is_other = True
-                mixed = repr(int(whole) + int(above) / int(after.children[0]))
+                mixed = repr(int(whole) + int(above) / int(below))
                 mixed = lark.Token.new_borrow_pos("NUMBER", mixed, whole)
                 children[k - 1 : k + 2] = [lark.Tree("row", [*others, mixed, *after.children[1:]], before.meta)]
                 continue
-            elif sign == "/" and self._is_spaced(sign) and is_leaf(_first(after), "NUMBER"):  # 14 L / 3.5 L/min
+            elif sign == "/" and self._is_spaced(sign) and is_leaf(below, "NUMBER"):  # 14 L / 3.5 L/min
                 ends = k + 2
                 while ends < len(children) and children[ends] == "/" and not self._is_spaced(children[ends]):
                     ends += 2
