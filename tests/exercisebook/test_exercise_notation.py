@@ -1,10 +1,12 @@
 """Formulas as people write them: what is read, and how, and what is not read because it may mean two things."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from exercisebook import grammar
 from exercisebook.agreement import agree
-from exercisebook.authoring import expression
+from exercisebook.authoring import expression, number, poles, time_function
 from exercisebook.formulas import Formula
 from exercisebook.grammar import Unreadable
 from exercisebook.judging import RIGHT, judge
@@ -238,6 +240,20 @@ def test_no_text_takes_long_or_much(text, symbols):
     verdict = judge("x", expression(symbols.split()[0], symbols=symbols), text)
     assert verdict.status != RIGHT
     assert len(verdict.says) < 400
+
+
+#: What texts are made of that somebody types, or nobody.
+PARTS = [
+    *"()[]{}+-*/^.,;:=<>|&'_ 12st", "±", " and ", " for t < ", " 1/2", r"\frac", "²", "½", "%", "°C", " min",
+    " (2 min)", r"\mathrm{m}", "e^", "exp(", "sin ", " otherwise", " then ", "√", "|", r"\begin{cases}", r"\\", "dB",
+    "m3", "0", "x10^",
+]  # fmt: skip
+
+
+@given(st.lists(st.sampled_from(PARTS), max_size=14).map("".join))
+def test_every_text_has_a_verdict(text):
+    for kind in (number(5.2, "bar"), poles([-1, -2]), expression("2*s"), time_function("2*t", until=5, time="s")):
+        assert judge("x", kind, text).status
 
 
 @pytest.mark.parametrize(

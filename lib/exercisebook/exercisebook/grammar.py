@@ -287,7 +287,11 @@ class Reader:
             case "signed":
                 sign, operand = parsed.children
                 return self.tree(operand) if sign_of(sign) == "+" else negative(self.tree(operand))
-        return product(self._row(parsed.children))
+            case "row":
+                return product(self._row(parsed.children))
+        raise NotRead(
+            f"{self._quoted(parsed)} cannot be read: {_expected(self.symbols)}"
+        )  # times of a piece, in a call
 
     def _time(self, parsed):
         """A side of a comparison, which may be a time with its unit: t < 3 s."""

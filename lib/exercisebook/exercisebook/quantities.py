@@ -240,8 +240,10 @@ class _Quantities(Reader):
             below = _first(after)
             if are_numbers and above == "1" and is_leaf(next(iter(leaves(after))), "NAME"):  # 20 1/min
                 children[k - 1] = lark.Tree("row", [*others, whole], before.meta)
-            elif are_numbers and is_leaf(below, "NUMBER") and all(map(str.isdigit, (whole, above, below))):  # 1 1/2 min
-                self.is_other = True
+            elif (
+                are_numbers and is_leaf(below, "NUMBER") and all(map(str.isdigit, (whole, above, below))) and int(below)
+            ):
+                self.is_other = True  # 1 1/2 min
                 mixed = repr(int(whole) + int(above) / int(below))
                 mixed = lark.Token.new_borrow_pos("NUMBER", mixed, whole)
                 children[k - 1 : k + 2] = [lark.Tree("row", [*others, mixed, *after.children[1:]], before.meta)]
