@@ -9,6 +9,7 @@ import ast
 import copy
 import functools
 import itertools
+import math
 import re
 import unicodedata
 from collections.abc import Iterable
@@ -17,6 +18,7 @@ from typing import NamedTuple
 import lark
 
 from exercisebook import units
+from exercisebook.formulas import value_of
 from exercisebook.grammar import (
     UPRIGHT,
     Doubtful,
@@ -46,6 +48,8 @@ WORDS = dict.fromkeys(("none", "zero"), 0) | {
 }
 #: What begins a remark that is none: it says that the number is not meant so.
 _DOUBTING = ("or", "not", "no", "if")
+#: What may follow a sign ± beside the number, which is the answer: a wider range would hold other answers.
+WIDEST = 0.2
 
 
 class Quantity(NamedTuple):
@@ -147,10 +151,13 @@ class _Quantities(Reader):
                     raise
         if within is not None:  # 5.2 ± 0.1 bar
             self.units = {}
-            unit_of_both = [
-                factor for factor, _ in _factors(self.tree(*within.children)) if not isinstance(factor, ast.Constant)
-            ]
+            factors = [factor for factor, _ in _factors(self.tree(*within.children))]
+            deviation = math.prod(factor.value for factor in factors if isinstance(factor, ast.Constant))
+            is_in_same_unit = {*self.units.values()} <= {*found[-1].units.values()} or not found[-1].units
+            unit_of_both = [factor for factor in factors if not isinstance(factor, ast.Constant)]
             value = found[-1]
+            if value.apart and is_in_same_unit and deviation > WIDEST * abs(value_of(value.apart[0])):
+                raise Doubtful(f"± {deviation:g} leaves a wide range: write the number alone")
             if not value.units and unit_of_both:
                 value = Quantity(_multiplied([(one, True) for one in (value.tree, *unit_of_both)]), self.units, True)
             found[-1] = value._replace(is_other=True)
