@@ -1,10 +1,12 @@
 """Formulas as people write them: what is read, and how, and what is not read because it may mean two things."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from exercisebook import grammar
 from exercisebook.agreement import agree
-from exercisebook.authoring import expression
+from exercisebook.authoring import expression, number, poles, time_function
 from exercisebook.formulas import Formula
 from exercisebook.grammar import Unreadable
 from exercisebook.judging import RIGHT, judge
@@ -115,6 +117,7 @@ READ = {
             " | 2 A (h1^0.5 - h0^0.5)/Kv | 2A[√h_1-√h_0]/K_v"
         ),
     },
+    "ca": {"ca + 1": "ca + 1 | 1+ca | c_a + 1"},  # which is short for about
     "k K_c tau_1 tau_2": {
         "(tau_1 + tau_2)/(2*sqrt(tau_1*tau_2*(1 + k*K_c)))": (
             "(tau1+tau2)/(2 sqrt(tau1 tau2 (1+k Kc))) | (τ_1+τ_2)/(2√(τ_1τ_2(1+kK_c)))"
@@ -168,7 +171,7 @@ DOUBTFUL = {
         "K(s)": "may be a product", "k": "did you mean", "kS": "", "\\": "",
     },
     "x n m": {
-        "x^nm": "needs brackets",
+        "x^nm": "needs brackets", "2x10^3": "may be the symbol",
     },
 }  # fmt: skip
 NOT_READ = [(text, symbols, says) for symbols, rows in DOUBTFUL.items() for text, says in rows.items()]
@@ -237,6 +240,20 @@ def test_no_text_takes_long_or_much(text, symbols):
     verdict = judge("x", expression(symbols.split()[0], symbols=symbols), text)
     assert verdict.status != RIGHT
     assert len(verdict.says) < 400
+
+
+#: What texts are made of that somebody types, or nobody.
+PARTS = [
+    *"()[]{}+-*/^.,;:=<>|&'_ 12st", "±", " and ", " for t < ", " 1/2", r"\frac", "²", "½", "%", "°C", " min",
+    " (2 min)", r"\mathrm{m}", "e^", "exp(", "sin ", " otherwise", " then ", "√", "|", r"\begin{cases}", r"\\", "dB",
+    "m3", "0", "x10^",
+]  # fmt: skip
+
+
+@given(st.lists(st.sampled_from(PARTS), max_size=14).map("".join))
+def test_every_text_has_a_verdict(text):
+    for kind in (number(5.2, "bar"), poles([-1, -2]), expression("2*s"), time_function("2*t", until=5, time="s")):
+        assert judge("x", kind, text).status
 
 
 @pytest.mark.parametrize(

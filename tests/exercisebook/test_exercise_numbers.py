@@ -92,7 +92,12 @@ WRITTEN = [
         "-2, -2 | -2 (double) | -2 double | double pole at -2 | a double pole at -2 | -2, twice | -2 (2x)"
         " | -2 and -2 | -2 (multiplicity 2)",
     ),
-    (poles([-1, -1, -2]), "-1 (double), -2 | -1 (double) and -2 | -2; -1 (twice) | -2, -1, -1"),
+    (
+        poles([-1, -1, -2]),
+        "-1 (double), -2 | -1 (double) and -2 | -2; -1 (twice) | -2, -1, -1"
+        " | s_{1,2} = -1, s_3 = -2 | s1 = s2 = -1, s3 = -2",
+    ),
+    (poles([-2, -4]), "s_1,2 = -3 ± 1 | s = -2 or s = -4 | s_1 = -2,\\ s_2 = -4 | [-2. -4.] | -2\n-4"),
     (TWO, "-1,-4 | -1 and -4 | s = -1 and s = -4 | s1=-1; s2=-4 | {-4, -1} | -1; -4"),
     (poles([]), "none | no zeros | There are no finite zeros. | []"),
 ]
@@ -187,6 +192,14 @@ JUDGED = [
         (PERIOD, text, UNJUDGED, "")
         for text in ("120 s 3", "1 2 0", "120 s or 130 s", "120 m", "12 0 s", "between 100 and 140")
     ),
+    (PERIOD, "120 ± 5", RIGHT, "read as 120"),
+    (PERIOD, "120 s (2 min)", RIGHT, "right"),
+    (PERIOD, "120 s (3 min)", UNJUDGED, "two sides that differ"),
+    (PERIOD, "T > 120 s", RIGHT, "read as 120 s"),
+    (PERIOD, "plus 1 20/(2)", UNJUDGED, "a sign is missing"),
+    (number(-1.2, "1/s"), "minus 1.2 1/s", RIGHT, "right"),
+    (number(5.2, "bar"), "5.2 bar(g)", RIGHT, "right"),
+    (numbers([1000, 0]), [1000, 9], WRONG, "1 of 2"),
     (SHARE, 25, MISTAKE, "in percent"),
     (ANGLE, 60, MISTAKE, "in deg"),
     (DIFFERENCE, "10 °C", UNJUDGED, "a temperature or a difference"),

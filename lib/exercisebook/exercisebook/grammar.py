@@ -128,21 +128,17 @@ def in_either(text: str, reading: Callable[[str, bool], Any]) -> Any:
     if len(text) > LONGEST:
         raise Unreadable(f"the text has {len(text)} characters: expected at most {LONGEST}")
     line = " ".join(_ESCAPED.sub(lambda made: "\\" + _LETTERS[made[0]], text).split())
-    try:
-        return reading(line, False)
-    except Doubtful:
-        raise
-    except Unreadable as problem:
+    problems = []
+    for commas in (False, True) if "," in line else (False,):
         try:
-            if "," in line:
-                return reading(line, True)
+            return reading(line, commas)
         except Doubtful:
             raise
-        except Unreadable:
-            pass
-        raise problem from None
-    except RecursionError:
-        raise Unreadable("the expression is very long: expected a simpler one") from None
+        except Unreadable as problem:
+            problems.append(problem)
+        except RecursionError:
+            raise Unreadable("the expression is very long: expected a simpler one") from None
+    raise problems[0]
 
 
 def _expected(symbols):
@@ -282,7 +278,7 @@ class Reader:
             case "condition" | "sum":
                 found = self.tree(parsed.children[0])
                 for sign, other in _pairs(parsed.children[1:]):
-                    found = ast.BinOp(found, _OPERATORS[_sign(sign)](), self.tree(other))
+                    found = ast.BinOp(found, _OPERATORS[sign_of(sign)](), self.tree(other))
                 return found
             case "comparison":
                 return self._compared(parsed.children)
@@ -290,15 +286,19 @@ class Reader:
                 return self._term(parsed)
             case "signed":
                 sign, operand = parsed.children
-                return self.tree(operand) if _sign(sign) == "+" else negative(self.tree(operand))
-        return product(self._row(parsed.children))
+                return self.tree(operand) if sign_of(sign) == "+" else negative(self.tree(operand))
+            case "row":
+                return product(self._row(parsed.children))
+        raise NotRead(
+            f"{self._quoted(parsed)} cannot be read: {_expected(self.symbols)}"
+        )  # times of a piece, in a call
 
     def _time(self, parsed):
         """A side of a comparison, which may be a time with its unit: t < 3 s."""
         number, *unit = parsed.children
         if parsed.data != "row" or len(unit) != 1 or not is_leaf(number, "NUMBER") or unit[0] not in TIMES:
             return self.tree(parsed)
-        if not self.time:
+        if self.time not in TIMES:
             raise Unreadable(f"which unit {self._quoted(parsed)} is in is not known here: expected the number alone")
         return ast.Constant(_value(number) * TIMES[unit[0]] / TIMES[self.time])
 
@@ -313,8 +313,10 @@ class Reader:
         found = self.tree(parsed.children[0])
         is_number = is_leaf(_only(parsed.children[0]), "NUMBER")
         for sign, other in _pairs(parsed.children[1:]):
-            if _sign(sign) == "*" or other.data != "row":
-                found = ast.BinOp(found, _OPERATORS[_sign(sign)](), self.tree(other))
+            if sign == "x" and "x" in self.known:
+                raise Doubtful("x may be the symbol or a sign of multiplication: set a *")
+            if sign_of(sign) == "*" or other.data != "row":
+                found = ast.BinOp(found, _OPERATORS[sign_of(sign)](), self.tree(other))
             else:
                 below, *others = self._below(self._row(other.children), is_number, found)
                 found = ast.BinOp(found, ast.Div(), below.tree)
@@ -427,7 +429,7 @@ class Reader:
                 factors[-1] = self._raised(factors[-1], more[0])
             if len(factors) > 1 and not is_run:
                 raise Doubtful(f"the exponent {self.text[factors[0].start : end]} needs brackets")
-            is_negative = [_sign(sign) for sign in signs].count("-") % 2
+            is_negative = [sign_of(sign) for sign in signs].count("-") % 2
             follows = waiting or re.match(r" ?/ ?[^( ]", self.text[end:])
             if is_run and follows and (is_negative or len(factors) > 1):
                 run = "*".join(self.text[one.start : one.end] for one in factors)
@@ -740,7 +742,7 @@ def _pairs(children):
     return list(zip(children[::2], children[1::2], strict=True))
 
 
-def _sign(token):
+def sign_of(token: lark.Token) -> str:
     """The sign of an operation, as Python writes it."""
     if token.type == "SIGN":
         return "+" if token in ("+", "plus") else "-"

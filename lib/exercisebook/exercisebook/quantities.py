@@ -9,6 +9,7 @@ import ast
 import copy
 import functools
 import itertools
+import math
 import re
 import unicodedata
 from collections.abc import Iterable
@@ -17,6 +18,7 @@ from typing import NamedTuple
 import lark
 
 from exercisebook import units
+from exercisebook.formulas import value_of
 from exercisebook.grammar import (
     UPRIGHT,
     Doubtful,
@@ -33,6 +35,7 @@ from exercisebook.grammar import (
     leaves,
     negative,
     product,
+    sign_of,
     span,
 )
 from exercisebook.pages import conversion
@@ -45,6 +48,8 @@ WORDS = dict.fromkeys(("none", "zero"), 0) | {
 }
 #: What begins a remark that is none: it says that the number is not meant so.
 _DOUBTING = ("or", "not", "no", "if")
+#: What may follow a sign ± beside the number, which is the answer: a wider range would hold other answers.
+WIDEST = 0.2
 
 
 class Quantity(NamedTuple):
@@ -146,10 +151,13 @@ class _Quantities(Reader):
                     raise
         if within is not None:  # 5.2 ± 0.1 bar
             self.units = {}
-            unit_of_both = [
-                factor for factor, _ in _factors(self.tree(*within.children)) if not isinstance(factor, ast.Constant)
-            ]
+            factors = [factor for factor, _ in _factors(self.tree(*within.children))]
+            deviation = math.prod(factor.value for factor in factors if isinstance(factor, ast.Constant))
+            is_in_same_unit = {*self.units.values()} <= {*found[-1].units.values()} or not found[-1].units
+            unit_of_both = [factor for factor in factors if not isinstance(factor, ast.Constant)]
             value = found[-1]
+            if value.apart and is_in_same_unit and deviation > WIDEST * abs(value_of(value.apart[0])):
+                raise Doubtful(f"± {deviation:g} leaves a wide range: write the number alone")
             if not value.units and unit_of_both:
                 value = Quantity(_multiplied([(one, True) for one in (value.tree, *unit_of_both)]), self.units, True)
             found[-1] = value._replace(is_other=True)
@@ -229,22 +237,25 @@ class _Quantities(Reader):
         children = list(parsed.children)
         if children[0].data == "signed":  # -2 1/s
             tree = self._term(lark.Tree("term", [children[0].children[1], *children[1:]], parsed.meta))
-            return negative(tree) if children[0].children[0] != "+" else tree
+            return tree if sign_of(children[0].children[0]) == "+" else negative(tree)
         k = 1
         while k < len(children) - 1:
             before, sign, after = children[k - 1 : k + 2]
             *others, whole, above = [None, None, *(before.children if before.data == "row" else ())]
             others = others[2:]
             are_numbers = is_leaf(whole, "NUMBER") and is_leaf(above, "NUMBER") and sign == "/" and after.data == "row"
-            if are_numbers and above == "1" and not is_leaf(after.children[0], "NUMBER"):  # 20 1/min
+            below = _first(after)
+            if are_numbers and above == "1" and is_leaf(next(iter(leaves(after))), "NAME"):  # 20 1/min
                 children[k - 1] = lark.Tree("row", [*others, whole], before.meta)
-            elif are_numbers and all(map(str.isdigit, (whole, above, after.children[0]))):  # 1 1/2 min
-                self.is_other = True
-                mixed = repr(int(whole) + int(above) / int(after.children[0]))
+            elif (
+                are_numbers and is_leaf(below, "NUMBER") and all(map(str.isdigit, (whole, above, below))) and int(below)
+            ):
+                self.is_other = True  # 1 1/2 min
+                mixed = repr(int(whole) + int(above) / int(below))
                 mixed = lark.Token.new_borrow_pos("NUMBER", mixed, whole)
                 children[k - 1 : k + 2] = [lark.Tree("row", [*others, mixed, *after.children[1:]], before.meta)]
                 continue
-            elif sign == "/" and self._is_spaced(sign) and is_leaf(_first(after), "NUMBER"):  # 14 L / 3.5 L/min
+            elif sign == "/" and self._is_spaced(sign) and is_leaf(below, "NUMBER"):  # 14 L / 3.5 L/min
                 ends = k + 2
                 while ends < len(children) and children[ends] == "/" and not self._is_spaced(children[ends]):
                     ends += 2

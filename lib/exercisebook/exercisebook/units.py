@@ -98,7 +98,7 @@ def convert(value: Number, unit: str, to: str) -> float:
         return 20 * math.log10(float(value) / (100 if unit else 1)) if value > 0 else -math.inf
     try:
         return float(registry().Quantity(float(value), _parsed(unit)).to(_parsed(to)).magnitude)
-    except (pint.PintError, OverflowError, TypeError):  # a logarithm of a Fraction
+    except (pint.PintError, AssertionError, OverflowError, TypeError):  # logarithms, of a Fraction and to a power
         raise ValueError(f"{unit or 'a number without unit'} is not a unit of the same quantity as {to or 1}") from None
 
 
@@ -159,6 +159,15 @@ def registry() -> pint.UnitRegistry:
     return found
 
 
+def with_powers(text: str) -> str:
+    """Return a unit with the sign of a power where it is left out, as Pint reads it.
+
+    >>> with_powers("m3/s"), with_powers("s-1")
+    ('m^3/s', 's^-1')
+    """
+    return re.sub(r"(?<=[A-Za-z])(-?[1-9])(?!\d)", r"^\1", text)
+
+
 @functools.lru_cache(maxsize=1000)
 def _parsed(text):
     text = spelled(text)
@@ -167,6 +176,6 @@ def _parsed(text):
     if not re.fullmatch(r"(\s*1\s*/)?[\s%°·*/()]*", between):
         raise ValueError(f"{text!r} is not a unit: expected one such as 's', 'kg/min' or '%/K'")
     try:
-        return registry().parse_units(re.sub(r"(?<=[A-Za-z])(-?[1-9])(?!\d)", r"^\1", text))
+        return registry().parse_units(with_powers(text))
     except Exception:  # Pint fails in as many ways as a text can be no unit
         raise ValueError(f"{text!r} is not a unit: expected one such as 's', 'kg/min' or '%/K'") from None

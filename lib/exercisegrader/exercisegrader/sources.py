@@ -1,8 +1,8 @@
 """What counts of a notebook: its sources, in one form. Outputs, attachments and the state of widgets are thrown away,
 so that running a notebook again changes nothing here.
 
-A file has a limit on its size, and another one on the number of values in it, however short they are: a picture takes
-as much in memory as in the file, an empty list thirty times as much.
+A file has a limit on its size, and another one on the number of brackets in it: a picture takes as much in memory as
+in the file, an empty list thirty times as much.
 """
 
 from __future__ import annotations
@@ -15,8 +15,10 @@ from exercisebook.judging import harmless
 from exercisegrader import GradingError
 from exercisegrader.imprint import Imprint
 
-#: The largest file (bytes); most of a notebook is pictures. Of brackets alone, it takes a gigabyte or two to read.
+#: The largest file (bytes); most of a notebook is pictures.
 LARGEST = 50 * 2**20
+#: The most lists and dictionaries in it, brackets in texts included.
+MOST_BRACKETS = 4_000_000
 TOO_LARGE = f"the file is larger than {LARGEST // 2**20} MiB: expected one without its outputs"
 #: The most bytes of what is left of it.
 MOST = 10 * 2**20
@@ -72,6 +74,8 @@ def _read(stream):
     if len(content) > LARGEST:
         raise GradingError(TOO_LARGE)
     _demand(content.strip(), "it is empty")
+    brackets = content.count(b"[") + content.count(b"{")
+    _demand(brackets <= MOST_BRACKETS, f"it has more than {MOST_BRACKETS} brackets")
     try:
         notebook = json.loads(content)
     except UnicodeDecodeError as problem:

@@ -233,9 +233,7 @@ ATTACKS = (
     _file(_LARGE, "a picture of 40 MB", _replaced(_OUTPUTS, b'"outputs": ["' + b"A" * 4 * 10**7 + b'"]'), _RIGHT),
     _file(_LARGE, "an output without an end", _replaced(_OUTPUTS, b'"outputs": ["' + b"A" * 10**8)),
     _file(_LARGE, "pictures beyond all", lambda cells: notebook(cells) + b" " * (50 * 2**20)),
-    _file(
-        _LARGE, "outputs of brackets", _replaced(_OUTPUTS, b'"outputs": [' + b"[[[]]]," * 6 * 10**6 + b"{}]"), _RIGHT
-    ),
+    _file(_LARGE, "outputs of brackets", _replaced(_OUTPUTS, b'"outputs": [' + b"[[[]]]," * 6 * 10**6 + b"{}]")),
     _file(_LARGE, "one cell of 10 MB", lambda cells: notebook([*cells, "x = '" + "y" * 10**7 + "'"]), _EITHER),
     _file(_LARGE, "comments of 9 MB", lambda cells: notebook([*cells, "#" * 9 * 10**6]), _EITHER),
     _file(_LARGE, "100,000 cells", lambda cells: notebook([*cells, *["pass"] * 100_000]), _EITHER),

@@ -106,6 +106,7 @@ START = b'{"nbformat": 4, "cells": [{"cell_type": "code", "source": "1", "output
         (START + b"[" * 10**5, "it has too many brackets one in another"),
         (START + b'{"a":' * 10**5, "it has too many brackets one in another"),
         (START + b"1" * 10**6, "Exceeds the limit"),
+        (START + b"[]," * 5 * 10**6, "it has more than 4000000 brackets"),
         (b'{"nbformat": 4, "cells": [{"cell_type": "code", "source": "' + b"x" * MOST + b'"}]}', "more than 10 MiB"),
     ],
 )

@@ -411,9 +411,8 @@ def _each_pole(rows):
         row = " ".join(row.split()).rstrip(".")
         named, row = row, _NAMES.sub("", row)
         # s_1,2 = -1 and s_1 = s_2 = -1 are two, but of a pair each stands for one
-        times = (
-            2 if row != named and not re.search(r"[ij]", row) else max(1, len(re.findall(r"[a-z]_?\{?\d\}? ?=", row)))
-        )
+        are_two = row != named and not re.search(r"[ij]", row) and not _PAIR.search(row)
+        times = 2 if are_two else max(1, len(re.findall(r"[a-z]_?\{?\d\}? ?=", row)))
         if found and row.lower() in _TIMES:  # -2, twice
             found += found[-1:] * (_TIMES[row.lower()] - 1)
             continue

@@ -15,7 +15,7 @@ from fractions import Fraction
 from typing import Any
 
 from exercisebook.pages.formula import Formula
-from exercisebook.units import registry, spelled
+from exercisebook.units import registry, spelled, with_powers
 
 #: Functions of a number without unit, of an angle, and those whose value has the unit of what they are of.
 _OF_RATIO = {"exp", "log", "ln", "log10", "log2", "asin", "acos", "atan"}
@@ -30,7 +30,7 @@ UNKNOWN = None
 @functools.cache
 def unit_of(text: str) -> Any:
     """Return Pint's unit for a text, as "kg/min"; °C is K."""
-    text = spelled(text).replace("°C", "K").replace("dB", "dB_").replace("%", "percent_")
+    text = with_powers(spelled(text)).replace("°C", "K").replace("dB", "dB_").replace("%", "percent_")
     return registry().parse_units("".join({"³": "**3", "²": "**2", "·": "*"}.get(sign, sign) for sign in text))
 
 
