@@ -24,7 +24,7 @@ TESTS = {
     "loopbook-books": "tests/books",
 }
 #: What is installed with each, besides pytest and hypothesis: extras of its own, and packages of others.
-EXTRAS = {"bookledger": "pytest", "loopbook": "diagrams", "loopbook-books": "lab"}
+EXTRAS = {"bookledger": "pytest", "loopbook": "certified,diagrams", "loopbook-books": "lab"}
 OTHERS = {
     "bookledger": ["ipykernel", "nbclient"],
     "exercisebook": ["control", "ipython", "matplotlib"],

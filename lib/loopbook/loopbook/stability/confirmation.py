@@ -10,8 +10,9 @@ import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus
+from loopbook.stability.certified import certified_count
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, count_closed, count_roots
-from loopbook.stability.enclosures import Exact, UndecidedError
+from loopbook.stability.enclosures import UndecidedError
 
 if TYPE_CHECKING:
     from loopbook.stability.loops import Loops
@@ -134,14 +135,13 @@ def _exactly(loops, factor, delay):
     above = {d + delay: tuple(factor.numerator * c for c in part) for d, part in A.parts.items()}
     below = {d: tuple(factor.denominator * c for c in part) for d, part in B.parts.items()}
     parts: Quasipolynomial = plus(below, above)
-    order, divisor = len(parts[Fraction(0)]) - 1, parts[Fraction(0)][-1]
-    if max(map(len, parts.values())) - 1 > order:
+    if max(map(len, parts.values())) > len(parts[Fraction(0)]):
         return ENDLESS
-    sums = Quasipolynomials.exact(parts, order, divisor)
     try:
-        return int(count_roots(sums, Exact(parts, order, divisor, 1.0), int(loops.at_zero[4][0]))[0])
+        count = certified_count(parts, int(loops.at_zero[4][0]))
     except UndecidedError:
         return ON_LIMIT
+    return ON_LIMIT if count is None else count
 
 
 def confirm_gains(loops: Loops, gains: np.ndarray, frequencies: np.ndarray) -> None:

@@ -20,14 +20,13 @@ from loopbook.quasipolynomials.fraction import (
     taylor_coefficient,
     times,
 )
+from loopbook.stability.certified import certified_count
 from loopbook.stability.difference import Endless, at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import (
-    EPSILON,
     NARROWEST,
     Exact,
     UndecidedError,
     enclosed,
-    exact_coefficient,
     geometric,
     origin,
     walk,
@@ -42,7 +41,6 @@ if TYPE_CHECKING:
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
 MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each quasipolynomial
 FEW_TERMS = 1  # the degree of expansions for many quasipolynomials
-NARROWER = Fraction(1, 2**80)  # of an interval, as a share; what is no fraction is known to 30 digits
 DIGITS = 25  # from which a coefficient may be no fraction
 RATIO = 2.0  # of the frequencies at the ends of an interval, at first
 
@@ -55,7 +53,9 @@ class StabilityLimitError(ValueError):
 
 
 def is_stable(x: object) -> bool:
-    """Say whether a system or a loop is stable, proved; one with poles on the imaginary axis, proved as well, is not.
+    """Say whether a system or a loop is stable; one with poles on the imaginary axis is not.
+
+    With python-flint the answer is certified, without it validated (docs/stability.md); none is an error.
 
     Of a `Loop` it is internal stability that is meant: a pole that controller and process cancel counts, too. To close
     the loop around L(s), ask `is_closed_loop_stable`.
@@ -85,7 +85,7 @@ def unstable_poles(x: object) -> float:
     Raises:
         StabilityLimitError: for poles on the imaginary axis. One at zero that a zero of the numerator removes, as in
             (1 - exp(-s))/s, is none.
-        UndecidedError: for poles beside the axis of which 24 digits do not tell on which side they are.
+        UndecidedError: for poles so close to the axis that it is not told on which side they are.
         ValueError: for symbols, a loop that is improper or has no solution, or as `unstable_roots`.
 
     >>> unstable_poles(1 / (s - 1)), unstable_poles(1 / (s + 2 * sympy.exp(-s)))
@@ -151,12 +151,12 @@ def unstable_roots(denominator: Mapping, removable: int = 0) -> float:
 
     The argument principle counts them, by the phase of the sum along the imaginary axis. On an interval of frequency
     the phase is believed only where an expansion with a bound of its rest proves that the sum has no zero there;
-    otherwise the interval is divided, and computed with more digits where rounding is the reason, up to 24. Beyond a
-    certain frequency the highest power prevails, also by a bound. No more than 400,000 intervals are looked at. What is
-    still not told is decided without digits for a polynomial, and for one that all parts have in common, if the
-    coefficients are fractions of fewer than 25 digits. (Without such a factor there can be roots on the axis other than
-    zero only where the highest power returns with a dead time of which the others are multiples, or where several dead
-    times are no multiples of one.)
+    otherwise the interval is divided. Beyond a certain frequency the highest power prevails, also by a bound. So the
+    number is certified, with balls of up to 2,048 binary digits, or validated (docs/stability.md). What is still not
+    told is decided without digits for a polynomial, and for one that all parts have in common, if the coefficients are
+    fractions of fewer than 25 digits. (Without such a factor there can be roots on the axis other than zero only where
+    the highest power returns with a dead time of which the others are multiples, or where several dead times are no
+    multiples of one.)
 
     Arguments:
         denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is.
@@ -268,17 +268,17 @@ def _count_of(parts: Quasipolynomial, removable: int, name: Callable[[], object]
     parts = {delay - base: part for delay, part in parts.items()}
     if not parts:
         raise ValueError(f"{name()}: the sum is zero, expected one that is not")
-    order = len(parts[Fraction(0)]) - 1
+    order, divisor = len(parts[Fraction(0)]) - 1, parts[Fraction(0)][-1]
     if _degree(parts) - 1 > order:
         return math.inf
-    divisor = parts[Fraction(0)][-1]
-    sums = Quasipolynomials.exact(parts, order, divisor)
+    count: float | None = ON_LIMIT
     try:
-        count = int(count_roots(sums, Exact(parts, order, divisor, 1.0), removable)[0])
-        if count == ON_LIMIT and (removable or taylor_coefficient(parts, 0)):
-            # by floating point the highest powers are on the limit
+        if taylor_coefficient(parts, removable):
+            count = certified_count(parts, removable)
+        if count is None:
+            count = int(count_roots(Quasipolynomials.exact(parts, order, divisor), removable)[0])
             returning = abs(sum(part[order] for delay, part in parts.items() if delay and len(part) > order))
-            if returning != abs(divisor):
+            if count == ON_LIMIT and returning != abs(divisor):
                 raise UndecidedError("the number of unstable poles", 0.0, math.inf)
     except UndecidedError as reason:
         common, rest = common_polynomial(parts)
@@ -352,7 +352,6 @@ def shared_at_origin(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarray:
 
 def count_roots(
     sums: Quasipolynomials,
-    exact: Exact | None = None,
     removable: int = 0,
     near: np.ndarray | None = None,
     most: int | None = None,
@@ -362,8 +361,6 @@ def count_roots(
     It is ON_LIMIT with some on the axis, or so close to it that it is not told, and ENDLESS without end.
 
     Arguments:
-        exact: the same as `sums`, if it is a single one and more digits are at hand. Then ON_LIMIT is a root at zero or
-            an infinite row, and what is not told an UndecidedError.
         removable: how many roots at zero do not count.
         near: a frequency for each sum about which there are roots close to the axis; nan without one. It costs time
             not to know it.
@@ -393,10 +390,8 @@ def count_roots(
         coefficients = coefficients[:, :, points] / coefficients[0, -1, points]
         unit = power_of_two(prevailing(coefficients, least[points]))
         scaled = Quasipolynomials(coefficients, delays[:, points]).slower(unit)
-        if exact is not None:
-            exact = Exact(exact.parts, exact.order, exact.divisor, float(unit[0]))
         hints = None if near is None else near[points] / unit
-        counts[points] = Turns(scaled, unit, [far.get(point) for point in points], exact, removable).count(hints, most)
+        counts[points] = Turns(scaled, unit, [far.get(point) for point in points], removable).count(hints, most)
     return counts
 
 
@@ -410,10 +405,9 @@ class Turns:
         sums: Quasipolynomials,
         unit: np.ndarray,
         far: list[Endless | None],
-        exact: Exact | None,
         removable: int,
     ):
-        self.sums, self.unit, self.far, self.exact, self.removable = sums, unit, far, exact, removable
+        self.sums, self.unit, self.far, self.removable = sums, unit, far, removable
         self.phase, self.limit = np.zeros(sums.count), np.zeros(sums.count, dtype=bool)
         # many quasipolynomials are quicker done with shorter expansions
         self.degree = DEGREE if sums.count < 50 else FEW_TERMS
@@ -428,18 +422,16 @@ class Turns:
         one, points = np.ones(sums.count), np.arange(sums.count)
         which, a, b = geometric(_lowest(sums), one, near, RATIO)
         if self.removable:
-            start, turn = above_origin(sums, self.removable, self.exact)
+            start, turn = above_origin(sums, self.removable)
             self.phase += turn
             some = b > start[which]
             which, a, b = which[some], np.maximum(a[some], start[which[some]]), b[some]
         else:
-            # a quasipolynomial that vanishes at zero; of an exact one, only where it does
             size, at_zero = sums.sizes(points, 0 * one)[0], sums.coefficients[:, 0].sum(axis=0)
-            vanishes = abs(at_zero) <= 1e-15 * size if self.exact is None else not exact_coefficient(self.exact, 0)
-            self.limit |= vanishes
+            self.limit |= abs(at_zero) <= 1e-15 * size
         some = ~self.limit[which]
         most = most or MOST_INTERVALS + MORE_INTERVALS * sums.count
-        walk(self.judge, which[some], a[some], b[some], self.name, self.unit, self.exact is not None, most=most)
+        walk(self.judge, which[some], a[some], b[some], self.name, self.unit, most=most)
         ends = sums.value(points, one) * (-1j) ** sums.order
         beyond = [each.phase(scale) if each else 0.0 for each, scale in zip(self.far, self.unit.tolist(), strict=True)]
         # of n roots on the left, each turns the phase by a quarter turn; the rest of it comes beyond the frequency 1
@@ -452,17 +444,14 @@ class Turns:
             counts = whole
         return np.where(self.limit, ON_LIMIT, counts) + 0.0  # no negative zero
 
-    def _value(self, which, w, precise):
-        return self.exact.taylor(w, 0)[0] if precise else self.sums.value(which, w)
-
     def judge(self, which: np.ndarray, a: np.ndarray, b: np.ndarray, precise: bool) -> tuple:
         """Add the turns on intervals where they are known, and mark quasipolynomials with roots on the axis."""
         sums, c, r = self.sums, (a + b) / 2, (b - a) / 2
-        around = enclosed(sums, which, c, r, self.exact if precise else None, self.degree)
+        around = enclosed(sums, which, c, r, degree=self.degree)
         # all values then lie in a disc without zero, so that the phase turns by less than a half from one end to the
         # other; three times the noise, because both ends are rounded as well
         proven = around.least > 3 * around.noise
-        at_a, at_b = self._value(which, a, precise), self._value(which, b, precise)
+        at_a, at_b = sums.value(which, a), sums.value(which, b)
         turns = np.angle(at_b * at_a.conj())
         if self.rest is not None and not proven.all():
             # where the undelayed part outweighs the others, the phase is its own, and less than a quarter turn more
@@ -476,36 +465,10 @@ class Turns:
                 turns[of] = np.angle(alone_b * alone_a.conj())
                 turns[of] += np.angle(at_b[of] / alone_b) - np.angle(at_a[of] / alone_a)
         self.phase += np.bincount(which[proven], weights=turns[proven], minlength=sums.count)
-        noisy = around.is_noisy
-        if precise or self.exact is None:
-            within = noisy & (around.spread < 64 * around.noise)
-            lost = ~proven & ((b - a <= 2 * NARROWEST * b) | (b < 1e-200) | within)
-            if self.exact is None:
-                self.limit[which[lost]] = True
-            for k in np.flatnonzero(lost) if precise else ():
-                self.phase += self._nearer(float(a[k]), float(b[k]))
-                proven[k] = True
+        noisy = around.is_noisy & (around.spread < 64 * around.noise)
+        lost = ~proven & ((b - a <= 2 * NARROWEST * b) | (b < 1e-200) | noisy)
+        self.limit[which[lost]] = True
         return ~proven & ~self.limit[which], noisy, sums.longest[which]
-
-    def _nearer(self, low: float, high: float) -> float:
-        """The turn of a single quasipolynomial on an interval whose ends floating point hardly tells apart."""
-        powers = np.arange(DEGREE + 1)
-        sizes = self.sums.sizes(np.zeros(1, dtype=int), np.array([high]))[:, 0]
-        a, b = Fraction(low), Fraction(high)
-        intervals, total = [(a, b)], 0.0
-        while b - a > NARROWER * b:
-            a, b = intervals.pop()
-            c, r = (a + b) / 2, float(b - a) / 2
-            terms, *ends = (self.exact.taylor(np.array([w]))[:, 0] for w in (c, a, b))
-            around = abs(terms) * r**powers
-            noise = 8 * EPSILON * around.sum() + 2.0**-140 * sizes[0]
-            if 2 * around[0] - around.sum() - sizes[-1] * r ** (DEGREE + 1) > 4 * noise:
-                total += float(np.angle(ends[1][0] * ends[0][0].conj()))
-                if not intervals:
-                    return total
-            else:
-                intervals += [(a, c), (c, b)]
-        raise UndecidedError(self.name, low, high, float(self.unit[0]))
 
 
 def _lowest(sums):
