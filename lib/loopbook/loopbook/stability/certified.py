@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 BITS = (128, 512, 2048)  # of the balls, tried in turn where a value is not told from zero
 NARROWEST = 2.0**-80  # of an interval, as a share of its frequency; what is no fraction is known to 30 digits
-MOST_INTERVALS = 10_000
+MOST_INTERVALS = 2_000
 
 
 def certified_count(parts: Quasipolynomial, removable: int = 0) -> int | None:
@@ -38,7 +38,7 @@ def certified_count(parts: Quasipolynomial, removable: int = 0) -> int | None:
         removable: how many roots at zero do not count.
     Returns:
         An integer; None where it is not certified: without python-flint, where the highest powers with dead times are
-        together as strong as the one without, and where 10,000 intervals of frequency are not enough.
+        together as strong as the one without, and where 2,000 intervals of frequency are not enough.
     Raises:
         UndecidedError: for roots that are on the axis, or closer to it than 2,048 binary digits tell.
     Source: Mikhailov's criterion, by the lemmas of docs/stability.md.
