@@ -72,11 +72,12 @@ def _dead_times(H):
         ratios = [ratio for *_, ratio in family]
         unit = sympy.Rational(math.gcd(*(r.p for r in ratios)), math.lcm(*(r.q for r in ratios)))
         together = max(map(abs, ratios)) <= MOST_MULTIPLES * unit
-        for group, unit in [(family, unit)] if together else [([member], member[-1]) for member in family]:
-            sign = -1 if (unit * base).could_extract_minus_sign() else 1
+        for group in [family] if together else [[member] for member in family]:
+            step = unit if together else group[0][-1]
+            sign = -1 if (step * base).could_extract_minus_sign() else 1
             symbol = sympy.Dummy()
-            delays[symbol] = sign * unit * base
-            powers |= {exponential: number * symbol ** (sign * ratio / unit) for exponential, number, ratio in group}
+            delays[symbol] = sign * step * base
+            powers |= {exponential: number * symbol ** (sign * ratio / step) for exponential, number, ratio in group}
     return powers, delays
 
 
