@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import legendre
 
-from loopbook.deadtime.channels import ChannelModel
+from loopbook.deadtime.breaking_points import ROUNDED
 from loopbook.deadtime.collocation import NODES
-from loopbook.deadtime.echoes import ROUNDED
 from loopbook.deadtime.response import Response
 from plainmath.validation import increasing, one_of, real_numbers
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from loopbook.deadtime.channels import ChannelModel
 
 __all__ = ["response_to_samples"]
 
@@ -39,10 +40,8 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
     Raises:
         ValueError: for arrays that do not fit, another hold, more than 6,324 uneven times, or as `Response`.
 
-    >>> import numpy as np
-    >>> one = np.ones((1, 1))
-    >>> none = np.zeros((1, 0))
-    >>> integrator = ChannelModel(0 * one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
+    >>> from loopbook import System, s
+    >>> integrator = System(1 / s).state_space()
     >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0])[1:].round(6)
     array([1., 5.])
     >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0], hold="first order")[1:].round(6)
@@ -58,18 +57,17 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
         return u * response(since)
     late = float(ROUNDED) * 8 * abs(times).max()  # how far a difference of times may be from a jump that is meant
     even = np.linspace(0.0, since[-1], len(since))
-    if abs(since - even).max() <= late:
-        return _evenly(response, even, u, hold == "first order", late)
-    return _unevenly(response, since, u, hold == "first order", late)
+    is_even = abs(since - even).max() <= late
+    times = even if is_even else since
+    return (_evenly if is_even else _unevenly)(_Piece(response, times[-1], late), times, u, hold == "first order")
 
 
-def _unevenly(response, times, u, lines, late):
+def _unevenly(piece, times, u, lines):
     """The values at times of any distances, as a sum over all pairs of them."""
     count = len(times)
     if count**2 > 2 * MOST_PAIRS:
         most = math.isqrt(2 * MOST_PAIRS)
         raise ValueError(f"the times are {count} at uneven distances: expected even ones, or {most} at the most")
-    piece = _Piece(response, times[-1], late)
     changes = np.diff(u, prepend=0.0)
     slopes = changes[1:] / np.diff(times)
     total = u[0] * piece.values(times) if lines else np.zeros(count)
@@ -84,16 +82,15 @@ def _unevenly(response, times, u, lines, late):
     return total
 
 
-def _evenly(response, times, u, lines, late):
+def _evenly(piece, times, u, lines):
     """The values at times of one distance, by what a pulse of one sample does."""
-    piece = _Piece(response, times[-1], late)
     step = piece.values(times)
     if not lines:
         return _causal(np.diff(step, prepend=0.0), u)
     # a straight line is a step for each of its moments: means of the step response between samples
     width = times[-1] / (len(times) - 1)
-    inside = response.edges[(response.edges > late) & (response.edges < times[-1] - late)] / width
-    inside = inside[abs(inside - np.round(inside)) > late / width]
+    inside = piece.edges[(piece.edges > piece.late) & (piece.edges < times[-1] - piece.late)] / width
+    inside = inside[abs(inside - np.round(inside)) > piece.late / width]
     points = np.union1d(np.arange(len(times)), inside)  # in samples, so that most pieces are exactly one
     nodes, weights = legendre.leggauss(NODES // 2)
     lengths = np.diff(points)

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 __all__ = [
-    "DelayFraction", "Quasipolynomial", "common_polynomial", "expression", "lowest_term", "plus", "read",
-    "taylor_coefficient", "times",
+    "ZERO", "DelayFraction", "Quasipolynomial", "common_polynomial", "earlier", "expression", "lowest_term", "plus",
+    "read", "taylor_coefficient", "times",
 ]  # fmt: skip
 
 #: A sum of polynomials in `s`, each with a dead time: {delay: whole coefficients, the lowest power first}.
@@ -252,6 +252,11 @@ class DelayFraction:
         fraction = DelayFraction.__new__(DelayFraction)
         fraction.numerator, fraction.denominator = _ordered(above, below if above else ONE)
         return fraction
+
+    @property
+    def fraction(self) -> DelayFraction:
+        """The same as a `DelayFraction`, which may become improper."""
+        return DelayFraction.coprime(self.numerator, self.denominator)
 
     @functools.cached_property
     def expr(self) -> sympy.Expr:

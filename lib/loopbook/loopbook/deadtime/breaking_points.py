@@ -1,4 +1,4 @@
-"""Where the signals of a model with delay channels are not smooth, and up to which frequencies that can be seen.
+"""The breaking points of a model with delay channels: where its signals are not smooth, and up to which frequencies.
 
 A step at the input comes back from each channel one delay later, smoother after each integration on its way, and so on.
 What comes back at a moment is known by its transform on a grid of frequencies. A polynomial of degree 19 over a segment
@@ -27,10 +27,10 @@ LONGEST = 12.0  # the same for the fastest motion that may grow unseen
 ROUNDED = Fraction(1, 2**48)  # by how much, as a share of them, two moments that are meant to be one may differ
 ROUNDS = 50.0  # delays that a segment may be long, so that two of its nodes look back before its beginning
 KEPT = 0.5  # of what goes round in channels alone: less is gone before such a segment ends
-MOST_ECHOES = 30_000
+MOST_POINTS = 30_000
 
 
-class Echoes:
+class BreakingPoints:
     """The moments at which something comes back from the channels, in the order of time, as far as they are asked for.
 
     Arguments:
@@ -78,10 +78,10 @@ class Echoes:
         self.count = 1
         self._heap: list[int] = []
         self._pending: dict[int, np.ndarray] = {}
-        self._heard(0, from_input[:, seen:], 0.0)
+        self._arrive(0, from_input[:, seen:], 0.0)
 
-    def _heard(self, tick: int, content: np.ndarray, threshold: np.ndarray | float) -> bool:
-        """Whether something is heard that is new at this moment; then also what comes back from it."""
+    def _arrive(self, tick: int, content: np.ndarray, threshold: np.ndarray | float) -> bool:
+        """Whether something new comes back at this moment; then also what comes back from that."""
         signals, places = (abs(content) > threshold).nonzero()
         if not len(places):
             return False
@@ -100,7 +100,7 @@ class Echoes:
                 entry[channel] += content[channel]
         return True
 
-    def listen(self, ahead: int, length: int, threshold: np.ndarray) -> bool:
+    def find(self, ahead: int, length: int, threshold: np.ndarray) -> bool:
         """Find moments up to the tick `ahead`, or up to the first that a segment of the length cannot cross.
 
         Returns whether there are new ones.
@@ -113,9 +113,9 @@ class Echoes:
             near = now + (now >> 48)
             while heap and heap[0] <= near:  # one but for rounding, as sums of irrational dead times
                 content += pending.pop(heapq.heappop(heap))
-            if self.count > MOST_ECHOES:
+            if self.count > MOST_POINTS:
                 raise OverflowError
-            new = self._heard(now, (self.from_channels * content).sum(axis=1), threshold)
+            new = self._arrive(now, (self.from_channels * content).sum(axis=1), threshold)
             if new and self.moments[-1][1] < length:
                 break
         return len(self.moments) > before
