@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import functools
 import math
+from bisect import bisect_right
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -49,7 +50,11 @@ def follow(model: ChannelModel, end: float) -> tuple[np.ndarray, np.ndarray]:
         try:
             return follower.run()
         except OverflowError:
-            raise ValueError(follower.too_many()) from None
+            late = ", ".join(f"{float(delay):g}" for delay in follower.model.delays)
+            raise ValueError(
+                f"the dead times {late} have more than {MOST_POINTS} sums before t = {end:g} at which the response is "
+                f"not smooth: expected an earlier end, or dead times that are multiples of one"
+            ) from None
 
 
 def _merged(model):
@@ -99,17 +104,12 @@ class _Follower:
         self._steps = {}
         self.edges = [0]
         self.signals = np.zeros((32, self.q + 1, NODES))
-        self.pointers = [0] * self.q
         self._looks = {}
 
     def run(self):
-        maximum, absolute = np.maximum.reduce, np.absolute
-        breaking, edges, per, last = self.breaking, self.edges, self.per, self.last
-        moments, n, q = breaking.moments, self.n, self.q
-        shape = (q + 1, NODES)
-        high = radau().high
-        scale = np.zeros(q + 1)
-        values = np.zeros(1 + n + q * NODES)
+        breaking, edges, last, n, q = self.breaking, self.edges, self.last, self.n, self.q
+        moments, maximum, high = breaking.moments, np.maximum.reduce, radau().high
+        scale, values = np.zeros(q + 1), np.zeros(1 + n + q * NODES)
         values[0] = 1.0
         longest, start = breaking.longest, breaking.start
         wish = min(start, moments[0][2] if moments else longest) or 1
@@ -150,10 +150,10 @@ class _Follower:
             # one segment
             if q:
                 self._inputs(values, position, length)
-            result = self._step(length / per, length) @ values
-            signals = result[n:].reshape(shape)
-            largest = np.maximum(scale, maximum(absolute(signals), axis=1))
-            left = absolute(signals @ high)
+            result = self._step(length / self.per, length) @ values
+            signals = result[n:].reshape(q + 1, NODES)
+            largest = np.maximum(scale, maximum(abs(signals), axis=1))
+            left = abs(signals @ high)
             tail = maximum(left[:, 8:], axis=1)
             if length > start and True in ((largest > RANGE * scale) & (scale > 0)).tolist():
                 wish, waiting = max(length >> 1, start), 1
@@ -168,9 +168,9 @@ class _Follower:
                     wish = length >> 1
                     waiting, patience = patience, min(2 * patience, 8 * PATIENCE)
                     if wish <= shortest:
-                        worst = (tail / largest).max()
+                        left = (tail / largest).max()
                         raise ValueError(
-                            f"the response up to t = {self.end:g} is not resolved: {worst:.0e} of it is left"
+                            f"the response up to t = {self.end:g} is not resolved: {left:.0e} of it is left"
                         )
                     continue
             scale = largest
@@ -234,13 +234,6 @@ class _Follower:
         if count == len(self.signals):
             self.signals = np.concatenate([self.signals, np.zeros_like(self.signals)])
 
-    def too_many(self):
-        late = ", ".join(f"{float(delay):g}" for delay in self.model.delays)
-        return (
-            f"the dead times {late} have more than {MOST_POINTS} sums before t = {self.end:g} at which the response is "
-            f"not smooth: expected an earlier end, or dead times that are multiples of one"
-        )
-
     def _inputs(self, values, position, length):
         """What comes out of the channels, at the nodes of a segment, as far as it went in before its beginning."""
         edges, signals, nodes = self.edges, self.signals, radau().nodes_list
@@ -252,12 +245,7 @@ class _Follower:
             if start + length <= 0 or count == 0:
                 into[:] = 0.0
                 continue
-            source = self.pointers[channel]
-            while source < count - 1 and edges[source + 1] <= start:
-                source += 1
-            while source and edges[source] > start:
-                source -= 1
-            self.pointers[channel] = source
+            source = min(max(bisect_right(edges, start) - 1, 0), count - 1)
             slack = length >> 44
             offset = edges[source] - start
             if -slack <= offset <= slack and abs(edges[source + 1] - edges[source] - length) <= slack:
@@ -266,16 +254,10 @@ class _Follower:
             if edges[source + 1] - start <= slack and source < count - 1:
                 source += 1
             into[:] = 0.0
-            first = 0
-            if start < 0:  # before the beginning there was nothing
-                edge = -2 * start / length - 1 + 1e-13
-                while first < NODES and nodes[first] <= edge:
-                    first += 1
+            # before the beginning there was nothing
+            first = bisect_right(nodes, -2 * start / length - 1 + 1e-13) if start < 0 else 0
             while first < NODES and source < count:
-                stop = 2 * (edges[source + 1] - start) / length - 1 + 1e-13
-                after = first
-                while after < NODES and nodes[after] <= stop:
-                    after += 1
+                after = bisect_right(nodes, 2 * (edges[source + 1] - start) / length - 1 + 1e-13, first)
                 if after > first:
                     own = edges[source + 1] - edges[source]
                     look = self._look(length / own, 2 * (start - edges[source]) / own, first, after)

@@ -74,7 +74,6 @@ class Modes:
             return 0.0, 0.0
         order = np.argsort(-self.poles.real)
         modes, now, total, samples = Modes(self.poles[order], self.residues[order]), 0.0, np.zeros(2), 0
-        grid = None
         while True:
             plain, weighted = modes.bounds()
             weighted = weighted + (begin + now) * plain
@@ -86,14 +85,15 @@ class Modes:
             amplitudes = modes.weights * abs(modes.residues)
             if not modes.poles[0].imag and amplitudes[0] > amplitudes[1:].sum():  # it changes its sign no more
                 return tuple(total + abs(modes._signed(begin + now)))
-            if keep < len(modes.poles) or grid is None:
+            if keep < len(modes.poles) or not samples:
                 modes = Modes(modes.poles[:keep], modes.residues[:keep])
-                grid = _Grid.of(modes.poles)
+                times = STEP / abs(modes.poles).max() * np.arange(CHUNK + 1)
+                waves = np.exp(modes.poles[:, None] * times)  # the same for each chunk
             samples += CHUNK
             if samples > MOST_SAMPLES:
                 raise ManyModesError
-            total += modes._chunk(begin + now, grid)
-            modes, now = modes.later(grid.times[-1]), now + float(grid.times[-1])
+            total += modes._chunk(begin + now, times, waves)
+            modes, now = modes.later(times[-1]), now + float(times[-1])
 
     def _signed(self, begin: float) -> np.ndarray:
         """The integrals from zero on, without and with begin + t as a weight."""
@@ -119,14 +119,13 @@ class Modes:
         weighted = (begin + first) * plain + half * q * J / lost**2 + J_t / lost
         return np.array([abs(head[0]) + start * plain, abs(head[1]) + start * weighted])
 
-    def _chunk(self, begin: float, grid: _Grid) -> np.ndarray:
-        """The integrals of `sizes` over the times of a grid, between zeros that are sought between the samples."""
+    def _chunk(self, begin: float, times: np.ndarray, waves: np.ndarray) -> np.ndarray:
+        """The integrals of `sizes` over times, between zeros that are sought between the samples."""
         p, c = self.poles, self.weights * self.residues
-        times, value, slope = grid.times, grid(c), grid(c * p)
+        value, slope = (np.stack([c, c * p]) @ waves).real
 
         def at(times, k):
-            waves = np.exp(p[:, None] * times)
-            return ((c * p**k) @ waves).real, ((c * p ** (k + 1)) @ waves).real
+            return (np.stack([c * p**k, c * p ** (k + 1)]) @ np.exp(p[:, None] * times)).real
 
         # between two samples it may dip through zero and come back
         turns = (value[:-1] * slope[:-1] < 0) & (value[1:] * slope[1:] > 0) & (value[:-1] * value[1:] > 0)
@@ -143,23 +142,6 @@ class Modes:
         plain = ((c / p) @ waves).real
         weighted = (begin + knots) * plain - ((c / p**2) @ waves).real
         return np.array([(signs * np.diff(plain)).sum(), (signs * np.diff(weighted)).sum()])
-
-
-@dataclass(frozen=True)
-class _Grid:
-    """Times, and the real and imaginary parts of ``exp(pole*t)`` there, which are the same for each chunk."""
-
-    times: np.ndarray
-    waves: np.ndarray
-
-    @classmethod
-    def of(cls, poles: np.ndarray) -> _Grid:
-        times = STEP / abs(poles).max() * np.arange(CHUNK + 1)
-        waves = np.exp(poles[:, None] * times)
-        return cls(times, np.concatenate([waves.real, -waves.imag]))
-
-    def __call__(self, residues: np.ndarray) -> np.ndarray:
-        return np.concatenate([residues.real, residues.imag]) @ self.waves
 
 
 def _integrals(p: complex, c: complex, a: float, b: float, begin: float) -> tuple[complex, complex]:
@@ -203,26 +185,27 @@ def slow_modes(fraction: ErrorFraction, rate: float, most: int = MOST_MODES) -> 
 
 def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex] | None:
     """A pole, from one that is nearly that, and its residue, each with all digits of floating point."""
-    import mpmath
+    from flint import acb, acb_series, ctx, fmpq
 
-    def value(parts, p, k):
-        total = mpmath.mpf(0)
+    def around(parts, p):
+        """The value and the slope of a quasipolynomial."""
+        x, total = acb_series([p, 1], prec=2), acb_series([0], prec=2)
         for delay, part in parts.items():
-            late = mpmath.mpf(delay.numerator) / delay.denominator
-            polynomial, slope = mpmath.polyval(part[::-1], p, derivative=True)
-            total += (slope - late * polynomial if k else polynomial) * mpmath.exp(-late * p)
-        return total
+            late = x * -fmpq(delay.numerator, delay.denominator)
+            total += functools.reduce(lambda value, c: value * x + c, reversed(part)) * late.exp()
+        return total[0], total[1]
 
-    with mpmath.workdps(DIGITS):
-        p = mpmath.mpf(pole.real) if not pole.imag else mpmath.mpc(pole)
+    with ctx.workdps(DIGITS):
+        start = p = acb(pole)
         for _ in range(20):
-            step = value(fraction.D, p, 0) / value(fraction.D, p, 1)
-            p -= step
-            if abs(step) <= mpmath.mpf(10) ** (5 - DIGITS) * abs(p):
+            value, slope = around(fraction.D, p)
+            step = (value / slope).mid()
+            p = (p - step).mid()
+            if abs(step) <= abs(p) * 10 ** (5 - DIGITS):
                 break
         else:
             return None
-        if abs(p - mpmath.mpmathify(pole)) > 1e-5 * abs(p) or not p.real < 0:
+        if not abs(p - start) <= 1e-5 * abs(p) or not p.real < 0:
             return None
-        residue = value(fraction.N, p, 0) / value(fraction.D, p, 1) / p**fraction.pole
+        residue = around(fraction.N, p)[0] / around(fraction.D, p)[1] / p**fraction.pole
         return complex(p), complex(residue)

@@ -56,8 +56,14 @@ def with_values(H: object, values: Mapping[str, np.ndarray]) -> tuple[Quasipolyn
     H = transfer_function(H)
     if missing := sorted({str(symbol) for symbol in H.free_symbols - {s}} - set(values)):
         raise ValueError(f"give values for {', '.join(missing)} in {H}")
-    count = len(next(iter(values.values()))) if values else 1
-    above, below = (_numbers(side, values, count) for side in _compiled(H, tuple(values)))
+    count, sides = len(next(iter(values.values()))) if values else 1, []
+    for function, parts, powers in _compiled(H, tuple(values)):
+        table = np.array([row + np.zeros(count) for row in function(*values.values())])
+        coefficients, delays = table[: parts * powers].reshape(parts, powers, count), table[parts * powers :]
+        if (delays < 0).any():
+            raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")
+        sides.append(Quasipolynomials(coefficients, delays))
+    above, below = sides
     return above, below
 
 
@@ -71,18 +77,9 @@ def _compiled(H, names):
         side = side or {sympy.S.Zero: sympy.Poly(0, s)}
         order = max(max(part.degree() for part in side.values()), 0)
         rows = [part.coeff_monomial(s**n) for part in side.values() for n in range(order + 1)]
-        numbers = sympy.lambdify([positive[name] for name in names], [*rows, *side], "numpy")
+        numbers = sympy.lambdify([*positive.values()], [*rows, *side], "numpy")
         found.append((numbers, len(side), order + 1))
     return found
-
-
-def _numbers(compiled, values, count):
-    function, parts, powers = compiled
-    table = np.array([row + np.zeros(count) for row in function(*values.values())])
-    coefficients, delays = table[: parts * powers].reshape(parts, powers, count), table[parts * powers :]
-    if (delays < 0).any():
-        raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")
-    return Quasipolynomials(coefficients, delays)
 
 
 def fraction_of(above: Quasipolynomials, below: Quasipolynomials, point: int) -> DelayFraction:
@@ -93,14 +90,12 @@ def fraction_of(above: Quasipolynomials, below: Quasipolynomials, point: int) ->
     >>> fraction_of(*with_values(K * sympy.exp(-s / 10) / (2 * s + 1), {"K": np.array([1.0, 3.0])}), 1)
     DelayFraction(3*exp(-s/10)/(2*s + 1))
     """
-    rows, delays = (
-        [getattr(sums, name)[..., point % sums.count].tolist() for sums in (above, below)]
-        for name in ("coefficients", "delays")
-    )
+    sides: list[Quasipolynomial] = []
     # numbers in floating point are whole ones over a power of two
+    rows = [sums.coefficients[..., point % sums.count].tolist() for sums in (above, below)]
     scale = max(c.as_integer_ratio()[1] for side in rows for row in side for c in row)
-    sides: list[Quasipolynomial] = [{}, {}]
-    for n in (0, 1):
-        for row, delay in zip(rows[n], delays[n], strict=True):
-            sides[n] = plus(sides[n], {Fraction(repr(delay)): tuple(int(Fraction(c) * scale) for c in row)})
+    for side, sums in zip(rows, (above, below), strict=True):
+        parts = zip(side, sums.delays[:, point % sums.count].tolist(), strict=True)
+        whole = [{Fraction(repr(delay)): tuple(int(Fraction(c) * scale) for c in row)} for row, delay in parts]
+        sides.append(functools.reduce(plus, whole, {}))
     return DelayFraction(*sides)
