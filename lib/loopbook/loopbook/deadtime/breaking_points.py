@@ -57,7 +57,8 @@ class BreakingPoints:
         from_input, channels = _transfer(model, grid)
         q = len(delays)
         # what goes round in the channels becomes smaller each time where the spectral radius of the sizes is below 1
-        loud = np.flatnonzero(_radius(abs(channels[:q])) >= 1)
+        radii = abs(np.linalg.eigvals(abs(np.moveaxis(channels[:q], -1, 0)))).max(axis=1, initial=0.0)
+        loud = np.flatnonzero(radii >= 1)
         if len(loud) and loud[-1] == len(grid) - 1:  # what comes back is never smooth
             longest = REACH / fastest if fastest else math.inf
         else:
@@ -87,17 +88,14 @@ class BreakingPoints:
             return False
         top = int(places.max())
         self.moments.append((tick, int(self._lengths[top]), max(1, int(self._starts[top]))))
-        for channel in set(signals.tolist()):
-            if channel == len(self.delays):
-                continue
+        for channel in set(signals.tolist()) - {len(self.delays)}:
             later = tick + self.delays[channel]
             if later <= self.last:
-                entry = self._pending.get(later)
-                if entry is None:
-                    self._pending[later] = entry = self._empty.copy()
+                if later not in self._pending:
+                    self._pending[later] = self._empty.copy()
                     heapq.heappush(self._heap, later)
                     self.count += 1
-                entry[channel] += content[channel]
+                self._pending[later][channel] += content[channel]
         return True
 
     def find(self, ahead: int, length: int, threshold: np.ndarray) -> bool:
@@ -123,8 +121,6 @@ class BreakingPoints:
 
 def _speeds(model):
     """How fast the signals can change, in 1/time: without the channels, and with each closed either way."""
-    if not len(model.A):
-        return [], 0.0
     # independent of the unit of time
     changes = model.B2.T[:, :, None] * model.C2[:, None, :]
     values = np.linalg.eigvals(model.A + np.concatenate([0 * model.A[None], changes, -changes]))
@@ -151,21 +147,8 @@ def _memory(model):
 def _transfer(model, grid):
     """From the input and from the channels to the channels and the output, on the grid of frequencies."""
     A, B1, B2, C1, C2, D11, D12, D21, D22, _ = model
-    direct_input, direct = np.vstack([D21, D11]), np.vstack([D22, D12])
-    if not len(A):
-        ones = np.ones(len(grid))
-        return direct_input * ones + 0j, direct[..., None] * ones + 0j
-    moments = (SLANT + 1j) * grid
-    states = np.linalg.solve(moments[:, None, None] * np.eye(len(A)) - A, np.hstack([B1, B2])[None] + 0j)
-    values = np.vstack([C2, C1]) @ states + np.hstack([direct_input, direct])
+    points = (SLANT + 1j) * grid
+    states = np.linalg.solve(points[:, None, None] * np.eye(len(A)) - A, np.hstack([B1, B2])[None] + 0j)
+    values = np.vstack([C2, C1]) @ states + np.block([[D21, D22], [D11, D12]])
     values = np.moveaxis(values, 0, -1)
     return np.ascontiguousarray(values[:, 0]), values[:, 1:]
-
-
-def _radius(matrices):
-    """The spectral radii of matrices without negative elements, along the last axis."""
-    if len(matrices) == 0:
-        return np.zeros(matrices.shape[-1])
-    if len(matrices) == 1:
-        return matrices[0, 0]
-    return abs(np.linalg.eigvals(np.moveaxis(matrices, -1, 0))).max(axis=1)

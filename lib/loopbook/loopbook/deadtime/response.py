@@ -58,13 +58,15 @@ class Response:
     def __call__(self, times: ArrayLike) -> np.ndarray:
         """Return the values at the given times, at a jump the one after it."""
         times = times_from_zero(times)
-        edges = self.edges
-        if times.size and times.max() > edges[-1]:
-            raise ValueError(f"t = {times.max():g} is later than {edges[-1]:g}, the end of the response")
+        if times.size and times.max() > self.edges[-1]:
+            raise ValueError(f"t = {times.max():g} is later than {self.edges[-1]:g}, the end of the response")
         # a time that is an edge but for rounding belongs to the segment that begins there
-        index = np.clip(np.searchsorted(edges, times * (1 + float(ROUNDED)), side="right") - 1, 0, len(edges) - 2)
-        length = edges[index + 1] - edges[index]
-        return legendre.legval(2 * (times - edges[index]) / length - 1, self.coefficients.T[:, index], tensor=False)
+        return series(self.coefficients.T, *self.located(times, times * float(ROUNDED)))
+
+    def located(self, times: np.ndarray, late: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        """The segment of each time, that after an edge from a little before it on, and the place in it from -1 to 1."""
+        index = np.clip(np.searchsorted(self.edges, times + late, side="right") - 1, 0, len(self.edges) - 2)
+        return index, 2 * (times - self.edges[index]) / (self.edges[index + 1] - self.edges[index]) - 1
 
     def quadrature(self, longest: float = math.inf) -> tuple[np.ndarray, np.ndarray]:
         """Return times and weights, two arrays with a row for each interval, for integrals over the response.
@@ -87,3 +89,14 @@ class Response:
         nodes, weights = legendre.leggauss(NODES)
         half = np.diff(edges)[:, None] / 2
         return edges[:-1, None] + half * (nodes + 1), half * weights
+
+
+def series(rows: np.ndarray, index: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """The values of Legendre series, those of the columns `index`, by Clenshaw's recursion.
+
+    NumPy's own would have the coefficients of each place in memory.
+    """
+    high, low = np.zeros_like(places), rows[-1][index]
+    for k in range(len(rows) - 2, -1, -1):
+        high, low = low, rows[k][index] + (2 * k + 1) / (k + 1) * places * low - (k + 1) / (k + 2) * high
+    return low

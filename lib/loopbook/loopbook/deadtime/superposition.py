@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 
 from loopbook.deadtime.breaking_points import ROUNDED
 from loopbook.deadtime.collocation import NODES
-from loopbook.deadtime.response import Response
+from loopbook.deadtime.response import Response, series
 from plainmath.validation import increasing, one_of, real_numbers
 
 if TYPE_CHECKING:
@@ -59,10 +59,10 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
     even = np.linspace(0.0, since[-1], len(since))
     is_even = abs(since - even).max() <= late
     times = even if is_even else since
-    return (_evenly if is_even else _unevenly)(_Piece(response, times[-1], late), times, u, hold == "first order")
+    return (_evenly if is_even else _unevenly)(response, late, times, u, hold == "first order")
 
 
-def _unevenly(piece, times, u, lines):
+def _unevenly(response, late, times, u, lines):
     """The values at times of any distances, as a sum over all pairs of them."""
     count = len(times)
     if count**2 > 2 * MOST_PAIRS:
@@ -70,32 +70,32 @@ def _unevenly(piece, times, u, lines):
         raise ValueError(f"the times are {count} at uneven distances: expected even ones, or {most} at the most")
     changes = np.diff(u, prepend=0.0)
     slopes = changes[1:] / np.diff(times)
-    total = u[0] * piece.values(times) if lines else np.zeros(count)
+    total = u[0] * _values(response, times, late) if lines else np.zeros(count)
     rows = max(1, CHUNK // count)
     for begin in range(0, count, rows):
         end = min(begin + rows, count)
         ago = times[begin:end, None] - times[:end]
         if lines:
-            total[begin:end] += piece.integrals(np.maximum(ago, 0.0)) @ slopes[: end - 1]
+            total[begin:end] += _integrals(response, np.maximum(ago, 0.0), late) @ slopes[: end - 1]
         else:
-            total[begin:end] = piece.values(ago) @ changes[:end]
+            total[begin:end] = _values(response, ago, late) @ changes[:end]
     return total
 
 
-def _evenly(piece, times, u, lines):
+def _evenly(response, late, times, u, lines):
     """The values at times of one distance, by what a pulse of one sample does."""
-    step = piece.values(times)
+    step = _values(response, times, late)
     if not lines:
         return _causal(np.diff(step, prepend=0.0), u)
     # a straight line is a step for each of its moments: means of the step response between samples
     width = times[-1] / (len(times) - 1)
-    inside = piece.edges[(piece.edges > piece.late) & (piece.edges < times[-1] - piece.late)] / width
-    inside = inside[abs(inside - np.round(inside)) > piece.late / width]
+    inside = response.edges[(response.edges > late) & (response.edges < times[-1] - late)] / width
+    inside = inside[abs(inside - np.round(inside)) > late / width]
     points = np.union1d(np.arange(len(times)), inside)  # in samples, so that most pieces are exactly one
     nodes, weights = legendre.leggauss(NODES // 2)
     lengths = np.diff(points)
     places = (points[:-1, None] + lengths[:, None] * (nodes + 1) / 2) * width
-    integrals = (piece.values(places.ravel()).reshape(places.shape) @ weights) * lengths / 2
+    integrals = (_values(response, places, late) @ weights) * lengths / 2
     means = np.bincount(points[:-1].astype(int), integrals, len(times) - 1)
     pulses = np.diff(means, prepend=0.0)
     return u[0] * (step - np.r_[0.0, means]) + np.r_[0.0, _causal(pulses, u[1:])]
@@ -121,45 +121,17 @@ def _causal(kernel, u):
     return result
 
 
-class _Piece:
-    """The step response up to a time, zero before the beginning, and its integrals."""
-
-    def __init__(self, response, end, late):
-        after = min(len(response.edges) - 1, int(np.searchsorted(response.edges, end)) + 1)
-        self.edges, self.late = response.edges[: after + 1], late
-        self.coefficients, self.scale = response.coefficients[:after].T, 2 / np.diff(self.edges)
-        seen = np.flatnonzero((abs(self.coefficients) > 1e-17 * abs(self.coefficients).max()).any(axis=1))
-        self.coefficients = self.coefficients[: seen.max(initial=0) + 1]
-
-    def _places(self, ago):
-        """The segments, and the places in them from -1 to 1."""
-        index = np.clip(np.searchsorted(self.edges, ago + self.late, side="right") - 1, 0, len(self.edges) - 2)
-        return index, (ago - self.edges[index]) * self.scale[index] - 1
-
-    def values(self, ago):
-        value = _series(self.coefficients, *self._places(ago))
-        value[ago < -self.late] = 0.0
-        return value
-
-    def integrals(self, ago):
-        """The integrals between moments that follow one another along the last axis, from the later to the earlier.
-
-        Within a segment they are counted from its beginning, so that short ones do not get lost in the whole.
-        """
-        index, places = self._places(ago)
-        rows = legendre.legint(self.coefficients, lbnd=-1) / self.scale
-        inside = _series(rows, index, places)
-        before = np.r_[0.0, np.cumsum(rows.sum(axis=0))][index]
-        return (inside[..., :-1] - inside[..., 1:]) + (before[..., :-1] - before[..., 1:])
+def _values(response, ago, late):
+    """The step response so long ago, zero before the beginning."""
+    return np.where(ago < -late, 0.0, series(response.coefficients.T, *response.located(ago, late)))
 
 
-def _series(rows, index, place):
-    """The values of Legendre series, those of the columns `index`, by Clenshaw's recursion."""
-    last = len(rows) - 1
-    high, low = np.zeros_like(place), rows[last][index]
-    for degree in range(last - 1, -1, -1):
-        high, low = (
-            low,
-            rows[degree][index] + (2 * degree + 1) / (degree + 1) * place * low - (degree + 1) / (degree + 2) * high,
-        )
-    return low
+def _integrals(response, ago, late):
+    """Its integrals between moments that follow one another along the last axis, from the later to the earlier.
+
+    Within a segment they are counted from its beginning, so that short ones do not get lost in the whole.
+    """
+    index, places = response.located(ago, late)
+    rows = legendre.legint(response.coefficients.T, lbnd=-1) * (np.diff(response.edges) / 2)
+    inside, before = series(rows, index, places), np.r_[0.0, np.cumsum(rows.sum(axis=0))][index]
+    return -np.diff(inside) - np.diff(before)
