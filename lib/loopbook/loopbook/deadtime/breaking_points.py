@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from loopbook.deadtime.channels import ChannelModel
+    from loopbook.deadtime.state_space import ChannelModel
 
 BLIND = 40.0  # frequency times length above which a polynomial of degree 19 does not see a signal
 UNSEEN = 1e-14  # the share of a signal that is nothing

@@ -20,7 +20,7 @@ from numpy.polynomial import legendre
 from loopbook.deadtime.breaking_points import MOST_POINTS, UNSEEN, BreakingPoints
 
 if TYPE_CHECKING:
-    from loopbook.deadtime.channels import ChannelModel
+    from loopbook.deadtime.state_space import ChannelModel
 
 NODES = 20  # where a segment is known, so that it is a polynomial of degree 19
 GOAL = 1e-13  # the share of a signal that its last two coefficients may have
@@ -345,30 +345,21 @@ def _kron(one, other):
 class _Radau:
     """Nodes between -1 and 1, the last at 1; matrices to Legendre coefficients, and of integrals from the beginning."""
 
-    def __init__(self, count):
-        series = np.zeros(count + 1)
-        series[-2:] = 1, -1
-        nodes = np.sort(legendre.legroots(series).real)
-        for _ in range(3):
-            nodes = nodes - legendre.legval(nodes, series) / legendre.legval(nodes, legendre.legder(series))
-        nodes[-1] = 1.0
-        values = legendre.legvander(nodes, count)
-        degree = np.arange(count)
-        self.nodes, self.nodes_list = nodes, nodes.tolist()
-        self.to_coefficients = np.linalg.inv(values[:, :count])  # more exact than by the weights
-        self.high = self.to_coefficients[count // 2 :].T.copy()
-        # the integral of P_m from -1 is (P_{m+1} - P_{m-1})/(2m + 1)
-        integrals = np.empty((count, count))
-        integrals[:, 0] = nodes + 1
-        integrals[:, 1:] = (values[:, 2:] - values[:, :-2]) / (2 * degree[1:] + 1)
-        self.integration = integrals @ self.to_coefficients
-        differences = nodes[:, None] - nodes + np.eye(count)
+    def __init__(self):
+        from scipy.special import roots_jacobi
+
+        self.nodes = np.append(roots_jacobi(NODES - 1, 1, 0)[0], 1.0)
+        self.nodes_list = self.nodes.tolist()
+        # more exact than by the weights
+        self.to_coefficients = np.linalg.inv(legendre.legvander(self.nodes, NODES - 1))
+        self.high = self.to_coefficients[NODES // 2 :].T.copy()
+        integrals = legendre.legint(np.eye(NODES), lbnd=-1)
+        self.integration = legendre.legval(self.nodes, integrals).T @ self.to_coefficients
+        differences = self.nodes[:, None] - self.nodes + np.eye(NODES)
         self.barycentric = 1 / (2 * differences).prod(axis=1)  # a factor 2, near the capacity
 
 
-@functools.cache
-def radau() -> _Radau:
-    return _Radau(NODES)
+radau = functools.cache(_Radau)
 
 
 def interpolation(places: np.ndarray) -> np.ndarray:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from loopbook.deadtime.breaking_points import ROUNDED
-from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.collocation import NODES, follow
+from loopbook.deadtime.state_space import ChannelModel
 from plainmath.validation import not_negative, times_from_zero
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from plainmath.validation import increasing, one_of, real_numbers
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from loopbook.deadtime.channels import ChannelModel
+    from loopbook.deadtime.state_space import ChannelModel
 
 __all__ = ["response_to_samples"]
 

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Self, overload
 import numpy as np
 import sympy
 
-from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.deadtime.response import Response
-from loopbook.deadtime.schwarz import companion_form, schwarz_form
+from loopbook.deadtime.state_space import ChannelModel, state_space
 from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_response, step_info
 from loopbook.deadtime.superposition import response_to_samples
 from loopbook.laplace import transform
@@ -35,9 +34,6 @@ if TYPE_CHECKING:
 __all__ = ["System", "closed_loop"]
 
 DIFFERENTIATOR = read(s)
-
-#: From this order on a companion matrix loses too many digits.
-HIGH_ORDER = 12
 
 
 class System(DelayFraction):
@@ -353,28 +349,7 @@ class System(DelayFraction):
 
     @functools.cached_property
     def _state_space(self) -> ChannelModel:
-        from scipy.linalg import matrix_balance
-
-        back = {delay: part for delay, part in self.denominator.items() if delay}
-        ahead = {delay: part for delay, part in self.numerator.items() if delay}
-        parts = [self.numerator.get(ZERO, ()), *back.values(), *ahead.values()]
-        is_high = self.order >= HIGH_ORDER
-        A, C, D = (schwarz_form if is_high else companion_form)(self.denominator[ZERO], parts)
-        if len(A):
-            with np.errstate(invalid="ignore"):  # SciPy makes integers of scales
-                closed = A.copy()
-                if is_high:
-                    closed[-1] += abs(C[1 : 1 + len(back)]).sum(axis=0)
-                _, (scale, _) = matrix_balance(closed, permute=False, separate=True)
-            A, C = A * scale / scale[:, None], C * scale
-        # into the states and what is direct goes u - what comes back
-        enters = np.r_[1.0, -np.ones(len(back)), np.zeros(len(ahead))]
-        B, D = np.zeros((len(A), len(parts))), np.outer(D, enters)
-        B[-1:] = enters / (scale[-1] if len(A) else 1)
-        D[0, 1 + len(back) :] = 1.0
-        return ChannelModel(
-            A, B[:, :1], B[:, 1:], C[:1], C[1:], D[:1, :1], D[:1, 1:], D[1:, :1], D[1:, 1:], [*back, *ahead]
-        )
+        return state_space(self)
 
     def to_control(
         self, order: int | None = None, omega: ArrayLike | None = None
