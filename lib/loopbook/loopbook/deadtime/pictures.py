@@ -102,11 +102,9 @@ def bode_plot(
             decades(above.yaxis, bottom, top)
         above.set_ylim(bottom, top)
         decades(below.xaxis, low, high)
-        _degrees(below, *_phases(curves.values(), with_half_turn=margins is not None))
-        above.set_ylabel("magnitude [dB]" if db else "magnitude")
-        below.set_ylabel("phase [deg]")
-        below.set_xlabel(rf"$\omega$ [rad/{unit}]")
-        above.set_title(title or "")
+        _degrees(below, curves.values(), with_half_turn=margins is not None)
+        above.set(ylabel="magnitude [dB]" if db else "magnitude", title=title or "")
+        below.set(ylabel="phase [deg]", xlabel=rf"$\omega$ [rad/{unit}]")
         figure.align_ylabels([above, below])
         if len(curves) > 1:
             free_legend(above)
@@ -117,64 +115,61 @@ def bode_plot(
 
 
 def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
+    (left, right), bottom, top = above.get_xlim(), above.get_ylim()[0], below.get_ylim()[1]
+    one, labels, half_turns = float(size(1.0)), [], set()
+    above.axhline(one, **LEVEL)
+
     def phase_at(w):
         known = np.isfinite(curve.phase)
         about = np.interp(math.log(w), np.log(curve.omega[known]), curve.phase[known])
         angle = math.degrees(np.angle(H(1j * w)))
         return angle + 360 * round((about - angle) / 360)
 
-    (left, right), bottom = above.get_xlim(), above.get_ylim()[0]
-    top_of_phase = below.get_ylim()[1]
-    one = float(size(1.0))
-    above.axhline(one, **LEVEL)
-    labels, half_turns = [], set()
+    def mark(w, color, of_bar, bar, of_point, point):
+        of_bar.plot([w, w], bar, color=color, **BAR)
+        of_point.plot([w], [point], "o", color=color, markersize=5, zorder=4, **STILL)
+        magnitudes, phases = (bar, [point]) if of_bar is above else ([point], bar)
+        above.plot([w, w], [min(magnitudes), bottom], **GUIDE)
+        below.plot([w, w], [top, max(phases)], **GUIDE)
+
     of_gain = [("gain margin", margins.gain_margin, margins.omega_180)]
     if margins.gain_reduction > 0 and (w := _crossing(H, curve, 1 / margins.gain_reduction)):
         of_gain.append(("gain reduction", margins.gain_reduction, w))
     for name, value, w in of_gain:
-        if not (math.isfinite(value) and left < w < right):
-            continue
-        there, angle = float(size(H(1j * w))), phase_at(w)
-        above.plot([w, w], [one, there], color=OF_GAIN, **BAR)
-        above.plot([w, w], [min(one, there), bottom], **GUIDE)
-        below.plot([w, w], [top_of_phase, angle], **GUIDE)
-        below.plot([w], [angle], "o", color=OF_GAIN, markersize=5, zorder=4, **STILL)
-        half_turns.add(round(angle))
-        words = f"{name} {_short(size(value))} dB" if size(10.0) == 20 else f"{name} {_short(value)}"
-        labels.append((above, words, (w, one if there < one else there), OF_GAIN, ("above right", "above left")))
+        if math.isfinite(value) and left < w < right:
+            there, angle = float(size(H(1j * w))), phase_at(w)
+            mark(w, OF_GAIN, above, [one, there], below, angle)
+            half_turns.add(round(angle))
+            words = f"{name} {_short(size(value))}{' dB' if one == 0 else ''}"
+            labels.append((above, words, (w, max(one, there)), OF_GAIN, ("above right", "above left")))
     if math.isfinite(margins.phase_margin) and left < margins.omega_c < right:
-        w = margins.omega_c
-        angle = phase_at(w)
+        w, angle = margins.omega_c, phase_at(margins.omega_c)
         half_turn = 360 * round((angle - 180) / 360) + 180
-        below.plot([w, w], [half_turn, angle], color=OF_PHASE, **BAR)
-        below.plot([w, w], [top_of_phase, max(angle, half_turn)], **GUIDE)
-        above.plot([w, w], [one, bottom], **GUIDE)
-        above.plot([w], [one], "o", color=OF_PHASE, markersize=5, zorder=4, **STILL)
+        mark(w, OF_PHASE, below, [half_turn, angle], above, one)
         half_turns.add(half_turn)
         words = _phase_words(margins, unit)
         labels.append((below, words, (w, half_turn), OF_PHASE, ("below left", "above left", "below right")))
     for angle in half_turns or {-180}:
         below.axhline(angle, **LEVEL)
-    for axes, words, point, colour, places in labels:
-        free_place(axes, words, point, places, color=colour)
     if margins.omega_180 == math.inf:
         words = f"gain margin {_short(margins.gain_margin)} at ever higher frequencies"
-        free_place(above, words, (right, one), ("above left", "below left"), color=OF_GAIN)
+        labels.append((above, words, (right, one), OF_GAIN, ("above left", "below left")))
+    for axes, words, point, color, places in labels:
+        free_place(axes, words, point, places, color=color)
 
 
 def _crossing(H, curve, size) -> float | None:
     """The frequency at which the curve crosses the negative real axis at this distance from zero."""
     from scipy.optimize import brentq
 
-    turns = np.floor((curve.phase + 180) / 360)
-    nearest, found = 0.01 * size, None
+    turns, found = np.floor((curve.phase + 180) / 360), []
     for k in np.flatnonzero(np.diff(turns)):
         a, b = curve.omega[k : k + 2].tolist()  # as brentq takes them: an array's item is computed otherwise
         if np.isfinite(turns[k : k + 2]).all() and H(1j * a).imag * H(1j * b).imag < 0:
-            w = brentq(lambda w: H(1j * w).imag, a, b, xtol=1e-15 * b)
-            if abs(abs(H(1j * w)) - size) < nearest:
-                nearest, found = abs(abs(H(1j * w)) - size), float(w)
-    return found
+            w = float(brentq(lambda w: H(1j * w).imag, a, b, xtol=1e-15 * b))
+            found.append((abs(abs(H(1j * w)) - size), w))
+    apart, w = min(found, default=(math.inf, None))
+    return w if apart < 0.01 * size else None
 
 
 def _magnitudes(curves, with_one) -> tuple[float, float]:
@@ -195,21 +190,17 @@ def _magnitudes(curves, with_one) -> tuple[float, float]:
     return low / room, high * room
 
 
-def _phases(curves, with_half_turn) -> tuple[float, float]:
-    phases = np.concatenate([curve.phase[np.isfinite(curve.phase)] for curve in curves])
-    low, high = phases.min(), phases.max()
-    if with_half_turn:
-        low, high = min(low, -200.0), max(high, -160.0)
-    room = max(0.08 * (high - low), 0.5 * (90 - high + low), 5.0)
-    return low - room, high + room
-
-
-def _degrees(axes: Axes, low: float, high: float) -> None:
+def _degrees(axes: Axes, curves, with_half_turn) -> None:
     """Angles on the vertical axis, marked at parts or multiples of a half turn."""
     from matplotlib.ticker import FuncFormatter, MultipleLocator
 
-    steps = [15, 45, 90, 180, 360, 720]
-    step = next((x for x in steps if (high - low) / x <= 8), 360 * math.ceil((high - low) / 8 / 360))
+    phases = np.concatenate([curve.phase for curve in curves])
+    low, high = np.nanmin(phases), np.nanmax(phases)
+    if with_half_turn:
+        low, high = min(low, -200.0), max(high, -160.0)
+    room = max(0.08 * (high - low), 0.5 * (90 - high + low), 5.0)
+    low, high = low - room, high + room
+    step = next((x for x in (15, 45, 90, 180, 360, 720) if (high - low) / x <= 8), 360 * math.ceil((high - low) / 2880))
     axes.yaxis.set_major_locator(MultipleLocator(step))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:.0f}".replace("-", "\N{MINUS SIGN}")))
     axes.set_ylim(low, high)
@@ -271,18 +262,14 @@ def nyquist_plot(
             axes.plot(x, y, label=label or r"$L(j\omega)$", **line)
             thin = {"linewidth": 0.7, "linestyle": "-", "zorder": 1.8}
             axes.plot(x, -y, label=r"$L(-j\omega)$" if len(curves) == 1 else None, **(line | thin))
-        axes.set_xlim(left, right)
-        axes.set_ylim(bottom, top)
-        axes.set_aspect("equal")
+        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
         for place, curve in enumerate(curves.values()):
             _arrow(axes, curve, look(place)["color"])
         if margins is not None:
             (fraction,) = fractions.values()
             _nyquist_margins(axes, fraction, margins, unit)
         axes.plot([-1], [0], "x", color="#000000", markersize=8, markeredgewidth=1.8, label="$-1$", zorder=5)
-        axes.set_xlabel("real part")
-        axes.set_ylabel("imaginary part")
-        axes.set_title(title or "")
+        axes.set(xlabel="real part", ylabel="imaginary part", title=title or "")
         legend_below(axes)
     return PlanePlot(axes, _alt(title, curves, "imaginary part against real part", margins, with_sensitivity=True))
 
@@ -505,10 +492,7 @@ def _range(fractions, omega, margins) -> tuple[float, float]:
 
 def _short(value: float) -> str:
     """Three digits, without a power of ten where none is needed."""
-    if not math.isfinite(value) or not 1e-4 <= abs(value) < 1e5:
-        return f"{value:.3g}"
-    rounded = float(f"{value:.3g}")
-    return f"{rounded:g}" if abs(value) < 1e3 else f"{value:.0f}"
+    return f"{value:.0f}" if 999.5 <= abs(value) < 1e5 else f"{value:.3g}"
 
 
 def _phase_words(margins, unit) -> str:

@@ -151,7 +151,7 @@ def _beyond(
     times = response.quadrature()[0][late]
     apart = float(abs(response(times) - modes(times)).max())
     rest_modes = modes.later(end)
-    square, square_later = rest_modes.squares() if len(modes.poles) else (0.0, 0.0)
+    square, square_later = rest_modes.squares()
     found = np.array([square, 0.0, 0.0, end * square + square_later])
     if sizes:
         lead, lead_later = (bounds.max(initial=0.0) for bounds in rest_modes.bounds())

@@ -35,6 +35,8 @@ Quasipolynomial = dict[Fraction, tuple[int, ...]]
 ZERO: Fraction = Fraction(0)
 ONE: Quasipolynomial = {ZERO: (1,)}
 MOST_MULTIPLES = 60  # of a common base, up to which delays are powers of one symbol
+INFINITE = "is infinite: expected a transfer function"
+NOT_RATIONAL = "is not a rational function of s and dead times exp(-delay*s)"
 
 T = TypeVar("T")
 
@@ -411,19 +413,13 @@ def read(value: object) -> DelayFraction:
         raise ValueError(f"give a number for {', '.join(letters)} in {H}")
     try:
         above, below = _read(H)
-    except _InfiniteError:
-        raise ValueError(f"{H} is infinite: expected a transfer function") from None
-    except NoFractionError:
-        raise ValueError(f"{H} is not a rational function of s and dead times exp(-delay*s)") from None
+    except NoFractionError as reason:
+        raise ValueError(f"{H} {reason}") from None
     return DelayFraction(above, below)
 
 
-class _InfiniteError(Exception):
-    """A part of an expression is divided by zero."""
-
-
 class NoFractionError(Exception):
-    """An expression is no fraction of sums of polynomials with dead times."""
+    """What of an expression keeps it from being a fraction of sums of polynomials with dead times."""
 
 
 def _read(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
@@ -453,15 +449,15 @@ def _read(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
         p, q = _read(e.base)
         if e.exp < 0:
             if not p:
-                raise _InfiniteError
+                raise NoFractionError(INFINITE)
             p, q = q, p
         return _power(p, abs(int(e.exp))), _power(q, abs(int(e.exp)))
     if e in (sympy.oo, -sympy.oo, sympy.zoo):
-        raise _InfiniteError
+        raise NoFractionError(INFINITE)
     if e.is_number:
         number = rational(e)
         return {ZERO: (number.numerator,)} if number else {}, {ZERO: (number.denominator,)}
-    raise NoFractionError
+    raise NoFractionError(NOT_RATIONAL)
 
 
 def _power(parts: Quasipolynomial, n: int) -> Quasipolynomial:
@@ -473,7 +469,7 @@ def dead_time_of(e: sympy.exp) -> tuple[sympy.Expr, sympy.Expr]:
     number, rest = sympy.expand(e.exp).as_independent(s, as_Add=True)
     delay = sympy.expand(-rest / s)
     if delay.has(s) or not number.is_number:
-        raise NoFractionError
+        raise NoFractionError(NOT_RATIONAL)
     return sympy.exp(number), delay
 
 

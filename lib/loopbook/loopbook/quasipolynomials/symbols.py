@@ -12,7 +12,9 @@ import sympy
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.fraction import (
+    INFINITE,
     MOST_MULTIPLES,
+    NOT_RATIONAL,
     DelayFraction,
     NoFractionError,
     Quasipolynomial,
@@ -55,19 +57,19 @@ def normal_form(H: object) -> tuple[dict[sympy.Expr, sympy.Poly], dict[sympy.Exp
     {0: s, 1: 2}
     """
     H = transfer_function(H)
-    if H.has(sympy.oo, sympy.zoo):
-        raise ValueError(f"{H} is infinite: expected a transfer function")
     letters = sorted(H.free_symbols - {s}, key=str)
     try:
+        if H.has(sympy.oo, sympy.zoo):
+            raise NoFractionError(INFINITE)
         powers, delays = _dead_times(H)
         rational_function = H.xreplace(powers).replace(_is_irrational, _rational)
         if not rational_function.is_rational_function(s, *delays, *letters):
-            raise NoFractionError
+            raise NoFractionError(NOT_RATIONAL)
         fraction = sympy.QQ.frac_field(s, *delays, *letters).from_sympy(rational_function)
     except ZeroDivisionError:
-        raise ValueError(f"{H} is infinite: expected a transfer function") from None
-    except NoFractionError:
-        raise ValueError(f"{H} is not a rational function of s and dead times exp(-delay*s)") from None
+        raise ValueError(f"{H} {INFINITE}") from None
+    except NoFractionError as reason:
+        raise ValueError(f"{H} {reason}") from None
     above, below = (_collected(part, list(delays.values()), letters) for part in (fraction.numer, fraction.denom))
     base = next((d for d in below if all((other - d).is_nonnegative for other in below)), None)
     if base is None:
