@@ -134,9 +134,8 @@ class Quasipolynomials:
         total = np.zeros((degree + 1, len(w)), dtype=complex)
         for matrix, delay in zip(self._expansion, self.delays, strict=True):
             chosen = matrix[: degree + 1].take(points, axis=2)
-            value = np.empty_like(total)
-            for part, first in ((value.real, 0), (value.imag, 1)):
-                np.einsum("kij,ij->kj", chosen[:, first::2], powers[first::2], out=part)
+            even, odd = (np.einsum("kij,ij->kj", chosen[:, first::2], powers[first::2]) for first in (0, 1))
+            value = even + 1j * odd
             total += value * np.exp(-1j * (w * delay[points])) if delay.any() else value
         return total * 1j ** np.arange(degree + 1)[:, None]
 
