@@ -346,16 +346,19 @@ class _Radau:
     """Nodes between -1 and 1, the last at 1; matrices to Legendre coefficients, and of integrals from the beginning."""
 
     def __init__(self):
-        from scipy.special import roots_jacobi
-
-        self.nodes = np.append(roots_jacobi(NODES - 1, 1, 0)[0], 1.0)
-        self.nodes_list = self.nodes.tolist()
-        # more exact than by the weights
-        self.to_coefficients = np.linalg.inv(legendre.legvander(self.nodes, NODES - 1))
+        series = np.r_[np.zeros(NODES - 1), 1, -1]
+        nodes = np.sort(legendre.legroots(series).real)
+        for _ in range(3):
+            nodes = nodes - legendre.legval(nodes, series) / legendre.legval(nodes, legendre.legder(series))
+        nodes[-1] = 1.0
+        values = legendre.legvander(nodes, NODES)
+        self.nodes, self.nodes_list = nodes, nodes.tolist()
+        self.to_coefficients = np.linalg.inv(values[:, :-1])  # more exact than by the weights
         self.high = self.to_coefficients[NODES // 2 :].T.copy()
-        integrals = legendre.legint(np.eye(NODES), lbnd=-1)
-        self.integration = legendre.legval(self.nodes, integrals).T @ self.to_coefficients
-        differences = self.nodes[:, None] - self.nodes + np.eye(NODES)
+        # the integral of P_m from -1 is (P_{m+1} - P_{m-1})/(2m + 1)
+        integrals = np.c_[nodes + 1, (values[:, 2:] - values[:, :-2]) / (2 * np.arange(1, NODES) + 1)]
+        self.integration = integrals @ self.to_coefficients
+        differences = nodes[:, None] - nodes + np.eye(NODES)
         self.barycentric = 1 / (2 * differences).prod(axis=1)  # a factor 2, near the capacity
 
 

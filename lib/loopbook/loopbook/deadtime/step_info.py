@@ -128,7 +128,7 @@ def first_time_at(response: Response, level: float) -> float:
     rows = sign * response.coefficients.copy()
     rows[:, 0] -= abs(level)
     for k in np.flatnonzero(rows[:, 0] + abs(rows[:, 1:]).sum(axis=1) >= 0):
-        if legendre.legval(-1.0, rows[k]) >= -ROUNDING * abs(rows[k]).max():
+        if legendre.legval(-1.0, rows[k]) >= -ROUNDING * max(abs(level), abs(rows[k]).max()):
             return float(response.edges[k])
         if len(found := zeros_of(rows[k])):
             return _moment(response, k, found.min())

@@ -95,29 +95,25 @@ class Modes:
             total += modes._chunk(begin + now, times, waves)
             modes, now = modes.later(times[-1]), now + float(times[-1])
 
+    def _antiderivatives(self, times: np.ndarray, begin: float) -> np.ndarray:
+        """Functions of time whose changes are integrals, without and with begin + t as a weight: array [2, time]."""
+        p, c, waves = self.poles, self.weights * self.residues, np.exp(self.poles[:, None] * times)
+        plain = ((c / p) @ waves).real
+        return np.array([plain, (begin + times) * plain - ((c / p**2) @ waves).real])
+
     def _signed(self, begin: float) -> np.ndarray:
         """The integrals from zero on, without and with begin + t as a weight."""
-        c = self.weights * self.residues
-        plain = -(c / self.poles).sum().real
-        return np.array([plain, begin * plain + (c / self.poles**2).sum().real])
+        return -self._antiderivatives(np.zeros(1), begin)[:, 0]
 
     def _alone(self, begin: float) -> np.ndarray:
         """The integrals of `sizes` for the first mode: of a pair, half periods that shrink by one factor."""
-        p, c = complex(self.poles[0]), complex(self.residues[0])
-        rate, w = -p.real, p.imag
-        if not w:
-            return np.array([abs(c) / rate, abs(c) * (begin / rate + 1 / rate**2)])
-        amplitude, angle = 2 * abs(c), math.atan2(c.imag, c.real)
-        # the first zero of cos(w t + angle)
-        first = ((math.pi / 2 - angle) % math.pi) / w
-        head = [(2 * part).real for part in _integrals(p, c, 0.0, first, begin)]
-        # half a period from there: amplitude exp(-rate t) sin(w t)
-        start, half = amplitude * math.exp(-rate * first), math.pi / w
-        J, J_t = (part.imag for part in _integrals(p, 1.0, 0.0, half, 0.0))
-        q, lost = math.exp(-rate * half), -math.expm1(-rate * half)
-        plain = J / lost
-        weighted = (begin + first) * plain + half * q * J / lost**2 + J_t / lost
-        return np.array([abs(head[0]) + start * plain, abs(head[1]) + start * weighted])
+        mode, p, c = Modes(self.poles[:1], self.residues[:1]), complex(self.poles[0]), complex(self.residues[0])
+        if not p.imag:
+            return abs(mode._signed(begin))
+        half, first = math.pi / p.imag, (math.pi / 2 - math.atan2(c.imag, c.real)) % math.pi / p.imag
+        head, one = abs(np.diff(mode._antiderivatives(np.array([0.0, first, first + half]), begin))).T
+        shrunk, lost = math.exp(p.real * half), -math.expm1(p.real * half)
+        return head + one / lost + [0.0, half * shrunk * one[0] / lost**2]
 
     def _chunk(self, begin: float, times: np.ndarray, waves: np.ndarray) -> np.ndarray:
         """The integrals of `sizes` over times, between zeros that are sought between the samples."""
@@ -138,19 +134,7 @@ class Modes:
         zeros = _zeros(functools.partial(at, k=0), times[change], times[change + 1], value[change], value[change + 1])
         knots = np.concatenate([times[:1], zeros, times[-1:]])
         signs = np.where(np.concatenate([negative[change], negative[-1:]]), -1.0, 1.0)
-        waves = np.exp(p[:, None] * knots)
-        plain = ((c / p) @ waves).real
-        weighted = (begin + knots) * plain - ((c / p**2) @ waves).real
-        return np.array([(signs * np.diff(plain)).sum(), (signs * np.diff(weighted)).sum()])
-
-
-def _integrals(p: complex, c: complex, a: float, b: float, begin: float) -> tuple[complex, complex]:
-    """The integrals of c exp(p t), and of that with begin + t as a weight, from a to b."""
-    import cmath
-
-    one, other = c * cmath.exp(p * a), c * cmath.exp(p * b)
-    plain = (other - one) / p
-    return plain, ((begin + b) * other - (begin + a) * one) / p - plain / p
+        return np.diff(self._antiderivatives(knots, begin)) @ signs
 
 
 def _zeros(function, a, b, at_a, at_b):

@@ -97,9 +97,7 @@ class ResidueMethod:
 
     def _plain_share(self, x):
         """The residues of E G at a zero and its negative, where symbols leave open where they lie."""
-        z = sympy.exp(-self.delay * s)
-        above = (self.B + self.D * z) * sympy.expand(self.A * _mirrored(self.B) - self.C * _mirrored(self.D))
-        residue = above / ((self.A + self.C * z) * self.Delta.diff(s))
+        residue = self.integrand * self.Delta / self.Delta.diff(s)
         return residue.subs(s, sympy.sqrt(x)) + residue.subs(s, -sympy.sqrt(x))
 
     def _share(self, p, sign):
