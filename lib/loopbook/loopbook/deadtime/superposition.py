@@ -23,7 +23,7 @@ __all__ = ["response_to_samples"]
 HOLDS = ("zero order", "first order")
 MOST_PAIRS = 20_000_000  # of uneven samples, which are taken one by one: about five seconds
 CHUNK = 100_000
-LEAF = 256  # samples that are taken directly
+LEAF = 256  # samples that are taken directly, a power of two
 
 
 def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hold: str = "zero order") -> np.ndarray:
@@ -103,21 +103,17 @@ def _evenly(response, late, times, u, lines):
 
 def _causal(kernel, u):
     """The convolution of two arrays from their beginnings, each value as exact as those up to it are large."""
-    from scipy import linalg, signal
+    from scipy.signal import fftconvolve
 
     count, result = len(u), np.zeros(len(u))
-    size = min(LEAF, count)
-    corner = linalg.toeplitz(kernel[:size], np.zeros(size))
-    for begins in range(0, count, size):
-        number = begins // size
-        ends = min(count, begins + size)
-        if number:
-            reach = size * (number & -number)  # of what came before, as much as fits into a power of two
+    for begins in range(0, count, LEAF):
+        ends = min(count, begins + LEAF)
+        if begins:
+            reach = begins & -begins  # of what came before, as much as fits into a power of two
             ends_there = min(count, begins + reach)
-            there = signal.fftconvolve(u[begins - reach : begins], kernel[: reach + ends_there - begins])
+            there = fftconvolve(u[begins - reach : begins], kernel[: reach + ends_there - begins])
             result[begins:ends_there] += there[reach : reach + ends_there - begins]
-        length = ends - begins
-        result[begins:ends] += corner[:length, :length] @ u[begins:ends]
+        result[begins:ends] += np.convolve(kernel[: ends - begins], u[begins:ends])[: ends - begins]
     return result
 
 

@@ -118,14 +118,14 @@ def _rational(number):
 def _collected(part, delays, letters):
     """A polynomial in s, symbols for dead times and other symbols, as {delay: polynomial in s}."""
     collected = {}
-    for (power, *powers), coefficient in part.terms():
-        delay = sympy.Add(*(n * d for n, d in zip(powers, delays, strict=False)))
+    for (power, *powers), c in part.terms():
+        delay = sympy.expand(sympy.Add(*(n * d for n, d in zip(powers, delays, strict=False))))
         others = sympy.Mul(*(x**n for x, n in zip(letters, powers[len(delays) :], strict=True)))
-        terms = collected.setdefault(sympy.expand(delay), {})
-        terms[power,] = terms.get((power,), 0) + sympy.Rational(coefficient.numerator, coefficient.denominator) * others
-    polynomials = {delay: sympy.Poly.from_dict(terms, s) for delay, terms in collected.items()}
-    kept = {delay: polynomial for delay, polynomial in polynomials.items() if not polynomial.is_zero}
-    return dict(sorted(kept.items(), key=lambda item: sympy.default_sort_key(item[0])))
+        terms = collected.setdefault(delay, {})
+        terms[power,] = terms.get((power,), 0) + sympy.Rational(c.numerator, c.denominator) * others
+    ordered = sorted(collected.items(), key=lambda item: sympy.default_sort_key(item[0]))
+    polynomials = [(delay, sympy.Poly.from_dict(terms, s)) for delay, terms in ordered]
+    return {delay: polynomial for delay, polynomial in polynomials if not polynomial.is_zero}
 
 
 # ------------------------------------------------------------------------------------------------ in numbers
