@@ -54,6 +54,8 @@ def plus(one: Quasipolynomial, other: Quasipolynomial, factor: int = 1) -> Quasi
 
 def times(one: Quasipolynomial, other: Quasipolynomial) -> Quasipolynomial:
     """Return ``one*other``."""
+    if ONE in (one, other):
+        return other if one == ONE else one
     total: Quasipolynomial = {}
     for delay, p in one.items():
         for later, q in other.items():
@@ -461,6 +463,8 @@ def _read(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
 
 
 def _power(parts: Quasipolynomial, n: int) -> Quasipolynomial:
+    if len(parts) == 1:
+        return {n * delay: _coefficients(_polynomial(part) ** n) for delay, part in parts.items()}
     return functools.reduce(times, [parts] * n, ONE)
 
 
