@@ -15,7 +15,7 @@ import numpy as np
 from loopbook.deadtime import System
 from loopbook.integrals import Criteria, criteria
 from loopbook.integrals.error import MODES
-from loopbook.integrals.family import ise_family
+from loopbook.integrals.loops import ise_family
 from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.quasipolynomials.arrays import Quasipolynomials

@@ -5,8 +5,8 @@ from that, without a Pade approximation or a time step: `System` for block diagr
 control.
 """
 
-from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.response import Response
+from loopbook.deadtime.state_space import ChannelModel
 from loopbook.deadtime.system import System, closed_loop
 from loopbook.quasipolynomials import normal_form
 from loopbook.transfer import transfer_function

@@ -10,22 +10,27 @@ from __future__ import annotations
 
 import functools
 import math
+from bisect import bisect_right
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import legendre
 
-from loopbook.deadtime.echoes import MOST_ECHOES, UNSEEN, Echoes
+from loopbook.deadtime.breaking_points import MOST_POINTS, UNSEEN, BreakingPoints
 
 if TYPE_CHECKING:
-    from loopbook.deadtime.channels import ChannelModel
+    from loopbook.deadtime.state_space import ChannelModel
 
 NODES = 20  # where a segment is known, so that it is a polynomial of degree 19
 GOAL = 1e-13  # the share of a signal that its last two coefficients may have
 RESOLVED = 1e-12  # the same where rounding does not allow more
 MOST_SECONDS = 1.6  # about, by the sizes of what is to be done and not by the clock
-SECONDS, SECONDS_CHANNEL, SECONDS_ECHO = 1.6e-5, 1e-5, 1.5e-5  # of a segment, of each channel in it, of an echo
+SECONDS, SECONDS_CHANNEL, SECONDS_POINT = (
+    1.6e-5,
+    1e-5,
+    1.5e-5,
+)  # of a segment, of each channel in it, of a point
 OFTEN = 256  # segments after which that is looked at
 MOST_NUMBERS = 20_000_000  # that are kept of the signals
 MOST_MATRICES = 200  # that are kept
@@ -45,31 +50,33 @@ def follow(model: ChannelModel, end: float) -> tuple[np.ndarray, np.ndarray]:
         try:
             return follower.run()
         except OverflowError:
-            raise ValueError(follower.too_many()) from None
+            late = ", ".join(f"{float(delay):g}" for delay in follower.model.delays)
+            raise ValueError(
+                f"the dead times {late} have more than {MOST_POINTS} sums before t = {end:g} at which the response is "
+                f"not smooth: expected an earlier end, or dead times that are multiples of one"
+            ) from None
 
 
 def _merged(model):
     """The model with one channel for those of the same delay that carry the same signal but for a factor."""
-    delays = list(model.delays)
-    for k in range(len(delays) - 1, 0, -1):
-        for j in range(k):
-            if delays[j] != delays[k]:
-                continue
-            one, other = (np.concatenate([model.C2[i], model.D21[i], model.D22[i]]) for i in (j, k))
-            place = abs(one).argmax()
-            factor = other[place] / one[place] if one[place] else 0.0
-            if factor and (abs(other - factor * one) <= 4e-16 * abs(other)).all():
-                B2, D12, D22 = model.B2.copy(), model.D12.copy(), model.D22.copy()
-                for into in (B2, D12, D22):
-                    into[:, j] += factor * into[:, k]
-                rest = [i for i in range(len(delays)) if i != k]
-                delays.pop(k)
-                model = model._replace(
-                    B2=B2[:, rest], D12=D12[:, rest], C2=model.C2[rest], D21=model.D21[rest],
-                    D22=D22[np.ix_(rest, rest)], delays=delays,
-                )  # fmt: skip
+    rows, delays = np.hstack([model.C2, model.D21, model.D22]), model.delays
+    kept: list[int] = []
+    shares = np.zeros((len(delays), len(delays)))  # of each channel in those that are kept
+    for k, delay in enumerate(delays):
+        for j in kept:
+            place = abs(rows[j]).argmax()
+            factor = rows[k, place] / rows[j, place] if delays[j] == delay and rows[j, place] else 0.0
+            if factor and (abs(rows[k] - factor * rows[j]) <= 4e-16 * abs(rows[k])).all():
+                shares[k, j] = factor
                 break
-    return model
+        else:
+            kept.append(k)
+            shares[k, k] = 1.0
+    if len(kept) == len(delays):
+        return model
+    B2, D12, D22 = (into @ shares[:, kept] for into in (model.B2, model.D12, model.D22[kept]))
+    delays = [delays[k] for k in kept]
+    return model._replace(B2=B2, D12=D12, C2=model.C2[kept], D21=model.D21[kept], D22=D22, delays=delays)
 
 
 class _Follower:
@@ -90,31 +97,21 @@ class _Follower:
             raise ValueError(
                 f"the dead times {', '.join(map(str, model.delays))} have too many digits: expected fewer"
             ) from None
-        self.echoes = Echoes(model, end or float(sum(model.delays)) or 1.0, ticks, self.delays, last + (last >> 48))
-        self.steps = Steps(model)
+        self.breaking = BreakingPoints(
+            model, end or float(sum(model.delays)) or 1.0, ticks, self.delays, last + (last >> 48)
+        )
+        self.seconds = 0.0  # about, that the matrices of steps took
+        self._steps = {}
         self.edges = [0]
-        self.lengths = []
         self.signals = np.zeros((32, self.q + 1, NODES))
-        self.pointers = [0] * self.q
         self._looks = {}
 
     def run(self):
-        maximum, absolute = np.maximum.reduce, np.absolute
-        echoes, steps, edges, lengths, per, last = (
-            self.echoes,
-            self.steps,
-            self.edges,
-            self.lengths,
-            self.per,
-            self.last,
-        )
-        moments, n, q, delays = echoes.moments, self.n, self.q, self.delays
-        shape = (q + 1, NODES)
-        high = radau().high
-        scale = np.zeros(q + 1)
-        values = np.zeros(1 + n + q * NODES)
+        breaking, edges, last, n, q = self.breaking, self.edges, self.last, self.n, self.q
+        moments, maximum, high = breaking.moments, np.maximum.reduce, radau().high
+        scale, values = np.zeros(q + 1), np.zeros(1 + n + q * NODES)
         values[0] = 1.0
-        longest, start = echoes.longest, echoes.start
+        longest, start = breaking.longest, breaking.start
         wish = min(start, moments[0][2] if moments else longest) or 1
         shortest = wish >> 40
         position, index, waiting, patience, length = 0, 0, 0, PATIENCE, 0
@@ -127,7 +124,7 @@ class _Follower:
             while index < len(moments) and moments[index][0] <= position:
                 index += 1
             k = index
-            while k < len(moments) or echoes.listen(position + AHEAD * length, length, threshold):
+            while k < len(moments) or breaking.find(position + AHEAD * length, length, threshold):
                 tick, allowed, _ = moments[k]
                 gap = tick - position
                 if gap <= 0:
@@ -151,14 +148,12 @@ class _Follower:
             if forced:
                 length = -(-forced // -(-forced // length))
             # one segment
-            h = length / per
-            step = steps.step(h, length, delays)
             if q:
                 self._inputs(values, position, length)
-            result = step @ values
-            signals = result[n:].reshape(shape)
-            largest = np.maximum(scale, maximum(absolute(signals), axis=1))
-            left = absolute(signals @ high)
+            result = self._step(length / self.per, length) @ values
+            signals = result[n:].reshape(q + 1, NODES)
+            largest = np.maximum(scale, maximum(abs(signals), axis=1))
+            left = abs(signals @ high)
             tail = maximum(left[:, 8:], axis=1)
             if length > start and True in ((largest > RANGE * scale) & (scale > 0)).tolist():
                 wish, waiting = max(length >> 1, start), 1
@@ -173,9 +168,9 @@ class _Follower:
                     wish = length >> 1
                     waiting, patience = patience, min(2 * patience, 8 * PATIENCE)
                     if wish <= shortest:
-                        worst = (tail / largest).max()
+                        left = (tail / largest).max()
                         raise ValueError(
-                            f"the response up to t = {self.end:g} is not resolved: {worst:.0e} of it is left"
+                            f"the response up to t = {self.end:g} is not resolved: {left:.0e} of it is left"
                         )
                     continue
             scale = largest
@@ -186,7 +181,6 @@ class _Follower:
             count += 1
             position += length
             edges.append(position)
-            lengths.append(h)
             waiting -= 1
             if waiting <= 0 and 4 * length > 3 * wish < 3 * longest and last - position > WORTH * wish:
                 rest = maximum(left, axis=1)
@@ -202,6 +196,19 @@ class _Follower:
             if position >= finished:
                 return self._done()
 
+    def _step(self, h, length):
+        """The matrix of a step: from 1, the state and what comes out of the channels to the state and the signals."""
+        mantissa, exponent = math.frexp(h)
+        key = round(mantissa * 2**44), exponent
+        step = self._steps.get(key)
+        if step is None:
+            if len(self._steps) >= MOST_MATRICES:
+                self._steps.clear()
+            self.seconds += 2e-4 + 1.5e-10 * (NODES * self.n) ** 3
+            overlaps = [(k, delay / length) for k, delay in enumerate(self.delays) if delay < length - (length >> 44)]
+            step = self._steps[key] = step_matrix(self.model, h, overlaps)
+        return step
+
     def _size(self, values, result):
         """The sizes of what the signals are made of.
 
@@ -215,10 +222,10 @@ class _Follower:
         return own + abs(through) @ np.maximum(into, own[:-1])
 
     def _grow(self, count):
-        seconds = count * (SECONDS + SECONDS_CHANNEL * self.q) + self.steps.seconds
-        seconds += SECONDS_ECHO * self.echoes.count
+        seconds = count * (SECONDS + SECONDS_CHANNEL * self.q) + self.seconds
+        seconds += SECONDS_POINT * self.breaking.count
         if seconds > MOST_SECONDS or count * (self.q + 1) * NODES > MOST_NUMBERS:
-            speed = self.echoes.speed
+            speed = self.breaking.speed
             raise ValueError(
                 f"the response up to t = {self.end:g} needs too many segments, more than {count} up to "
                 f"t = {self.edges[-1] / self.per:g}: its fastest lag, about {1 / speed if speed else math.inf:.2g}, is "
@@ -227,19 +234,10 @@ class _Follower:
         if count == len(self.signals):
             self.signals = np.concatenate([self.signals, np.zeros_like(self.signals)])
 
-    def too_many(self):
-        late = ", ".join(f"{float(delay):g}" for delay in self.model.delays)
-        return (
-            f"the dead times {late} have more than {MOST_ECHOES} sums before t = {self.end:g} at which the response is "
-            f"not smooth: expected an earlier end, or dead times that are multiples of one"
-        )
-
     def _inputs(self, values, position, length):
         """What comes out of the channels, at the nodes of a segment, as far as it went in before its beginning."""
-        edges, lengths, signals = self.edges, self.lengths, self.signals
-        nodes = radau().nodes_list
-        place = 1 + self.n
-        count = len(lengths)
+        edges, signals, nodes = self.edges, self.signals, radau().nodes_list
+        place, count = 1 + self.n, len(edges) - 1
         for channel, delay in enumerate(self.delays):
             start = position - delay
             into = values[place : place + NODES]
@@ -247,12 +245,7 @@ class _Follower:
             if start + length <= 0 or count == 0:
                 into[:] = 0.0
                 continue
-            source = self.pointers[channel]
-            while source < count - 1 and edges[source + 1] <= start:
-                source += 1
-            while source and edges[source] > start:
-                source -= 1
-            self.pointers[channel] = source
+            source = min(max(bisect_right(edges, start) - 1, 0), count - 1)
             slack = length >> 44
             offset = edges[source] - start
             if -slack <= offset <= slack and abs(edges[source + 1] - edges[source] - length) <= slack:
@@ -261,16 +254,10 @@ class _Follower:
             if edges[source + 1] - start <= slack and source < count - 1:
                 source += 1
             into[:] = 0.0
-            first = 0
-            if start < 0:  # before the beginning there was nothing
-                edge = -2 * start / length - 1 + 1e-13
-                while first < NODES and nodes[first] <= edge:
-                    first += 1
+            # before the beginning there was nothing
+            first = bisect_right(nodes, -2 * start / length - 1 + 1e-13) if start < 0 else 0
             while first < NODES and source < count:
-                stop = 2 * (edges[source + 1] - start) / length - 1 + 1e-13
-                after = first
-                while after < NODES and nodes[after] <= stop:
-                    after += 1
+                after = bisect_right(nodes, 2 * (edges[source + 1] - start) / length - 1 + 1e-13, first)
                 if after > first:
                     own = edges[source + 1] - edges[source]
                     look = self._look(length / own, 2 * (start - edges[source]) / own, first, after)
@@ -290,7 +277,7 @@ class _Follower:
 
     def _done(self):
         per, edges = self.per, self.edges
-        rule, signal = radau(), self.signals[: len(self.lengths), -1]
+        rule, signal = radau(), self.signals[: len(edges) - 1, -1]
         ends = np.array([edge / per for edge in edges])
         if edges[-1] > self.last > edges[-2] + (edges[-2] >> 48):  # the last segment ends where it was asked for
             share = (self.last - edges[-2]) / (edges[-1] - edges[-2])
@@ -300,28 +287,6 @@ class _Follower:
         return ends, signal @ rule.to_coefficients.T
 
 
-class Steps:
-    """The matrices of steps: from 1, the state and what comes out of the channels to the state and the signals."""
-
-    def __init__(self, model: ChannelModel):
-        self.model = model
-        self.seconds = 0.0  # about, that they took
-        self._known: dict = {}
-
-    def step(self, h: float, length: int, delays: list[int]) -> np.ndarray:
-        """The matrix for the length h; lengths and delays also in ticks."""
-        mantissa, exponent = math.frexp(h)
-        key = round(mantissa * 2**44), exponent
-        step = self._known.get(key)
-        if step is None:
-            if len(self._known) >= MOST_MATRICES:
-                self._known.clear()
-            self.seconds += 2e-4 + 1.5e-10 * (NODES * len(self.model.A)) ** 3
-            overlaps = [(k, delay / length) for k, delay in enumerate(delays) if delay < length - (length >> 44)]
-            step = self._known[key] = step_matrix(self.model, h, overlaps)
-        return step
-
-
 def step_matrix(model: ChannelModel, h: float, overlaps: list[tuple[int, float]]) -> np.ndarray:
     """The matrix of one step of length h.
 
@@ -329,101 +294,75 @@ def step_matrix(model: ChannelModel, h: float, overlaps: list[tuple[int, float]]
         overlaps: the channels whose delay is shorter than h, and the delay as a share of h.
     """
     A, B1, B2, C1, C2, D11, D12, D21, D22, _ = model
-    n, q = len(A), B2.shape[1]
-    rule = radau()
-    half = h / 2
-    inner = len(overlaps)
-    size, columns = NODES * (n + inner), 1 + n + NODES * q
-    # unknown are the states at the nodes, a row for each node, and what the overlapping channels give, one by one
-    right = np.zeros((size, columns))
-    place = NODES * n
-    if n:
-        states = right[:place].reshape(NODES, n, columns)
-        states[:, :, 0] = half * np.outer(rule.nodes + 1, B1[:, 0])
-        states[:, :, 1 : n + 1] = np.eye(n)
-        states[:, :, n + 1 :].reshape(NODES, n, q, NODES)[...] = (
-            half * B2[None, :, :, None] * rule.integration[:, None, None, :]
-        )
-    left = np.eye(size)
-    if n:
-        left[:place, :place].reshape(NODES, n, NODES, n)[...] -= (
-            half * rule.integration[:, None, :, None] * A[None, :, None, :]
-        )
-    if inner:
-        to = [k for k, _ in overlaps]
-        for number, (k, share) in enumerate(overlaps):
-            rows = slice(place + number * NODES, place + (number + 1) * NODES)
-            late = np.zeros((NODES, NODES))
-            inside = rule.nodes > 2 * share - 1 + 1e-13
-            late[inside] = interpolation(rule.nodes[inside] - 2 * share)
-            # w_k = past + late z_k,  z_k = C2 x + D21 + D22 w
-            right[rows, n + 1 + k * NODES : n + 1 + (k + 1) * NODES] += np.eye(NODES)
-            right[rows, 0] += late.sum(axis=1) * D21[k, 0]
-            if n:
-                left[rows, :place] -= np.kron(late, C2[k : k + 1])
-            for other in range(q):
-                if not D22[k, other]:
-                    continue
-                if other in to:
-                    spot = place + to.index(other) * NODES
-                    left[rows, spot : spot + NODES] -= late * D22[k, other]
-                else:
-                    right[rows, n + 1 + other * NODES : n + 1 + (other + 1) * NODES] += late * D22[k, other]
-        if n:
-            for number, k in enumerate(to):
-                spot = place + number * NODES
-                # the states take all of the channel, also what is of this segment
-                left[:place, spot : spot + NODES] -= half * np.kron(rule.integration, B2[:, k : k + 1])
-                right[:place, n + 1 + k * NODES : n + 1 + (k + 1) * NODES] = 0.0
-    solved = np.linalg.solve(left, right)
+    n, q, rule, half = len(A), len(D22), radau(), h / 2
+    inner, of_states = [k for k, _ in overlaps], NODES * n
+    # unknown are the states at the nodes, a row for each node, and what the overlapping channels give, one by one;
+    # known are 1, the state at the beginning, and what came into the channels before
+    unknown = np.eye(of_states + NODES * len(inner))
+    columns = 1 + n + NODES * q
+    known = np.zeros((len(unknown), columns))
+    into_states = half * (B2[None, :, :, None] * rule.integration[:, None, None, :]).reshape(of_states, q, NODES)
+    from_channels = known[:, n + 1 :].reshape(len(known), q, NODES)
+    unknown[:of_states, :of_states] -= half * _kron(rule.integration, A)
+    unknown[:of_states, of_states:] -= into_states[:, inner].reshape(of_states, NODES * len(inner))
+    known[:of_states, 0] = half * np.outer(rule.nodes + 1, B1).ravel()
+    known[:of_states, 1 : n + 1] = np.tile(np.eye(n), (NODES, 1))
+    from_channels[:of_states] = into_states
+    from_channels[:of_states, inner] = 0.0
+    outer = np.ones(q)
+    outer[inner] = 0.0
+    for number, (k, share) in enumerate(overlaps):
+        rows = slice(of_states + number * NODES, of_states + (number + 1) * NODES)
+        late = np.zeros((NODES, NODES))
+        inside = rule.nodes > 2 * share - 1 + 1e-13
+        late[inside] = interpolation(rule.nodes[inside] - 2 * share)
+        # w_k = past + late z_k,  z_k = C2 x + D21 + D22 w
+        known[rows, 0] = late.sum(axis=1) * D21[k, 0]
+        from_channels[rows] = late[:, None] * (outer * D22[k])[:, None]
+        from_channels[rows, k] = np.eye(NODES)
+        unknown[rows, :of_states] -= _kron(late, C2[k : k + 1])
+        unknown[rows, of_states:] -= _kron(D22[k : k + 1, inner], late)
+    solved = np.linalg.solve(unknown, known)
+    from_state, direct_input, direct = np.vstack([C2, C1]), np.vstack([D21, D11]), np.vstack([D22, D12])
     step = np.empty((n + NODES * (q + 1), columns))
-    step[:n] = solved[place - n : place]
-    from_state, direct_input, direct = np.vstack([C2, C1]), np.vstack([D21, D11])[:, 0], np.vstack([D22, D12])
+    step[:n] = solved[of_states - n : of_states]
     signals = step[n:].reshape(q + 1, NODES, columns)
-    if n:
-        signals[...] = (from_state @ solved[:place].reshape(NODES, n, columns)).transpose(1, 0, 2)
-    else:
-        signals[...] = 0.0
-    signals[:, :, 0] += direct_input[:, None]
-    channels = dict.fromkeys(range(q))
-    for number, (k, _) in enumerate(overlaps):
-        channels[k] = solved[place + number * NODES : place + (number + 1) * NODES]
-    for k, given in channels.items():
-        if given is None:
-            diagonal = signals[:, np.arange(NODES), n + 1 + k * NODES + np.arange(NODES)]
-            signals[:, np.arange(NODES), n + 1 + k * NODES + np.arange(NODES)] = diagonal + direct[:, k : k + 1]
-        elif direct[:, k].any():
-            signals += direct[:, k, None, None] * given
+    signals[...] = (from_state @ solved[:of_states].reshape(NODES, n, columns)).transpose(1, 0, 2)
+    signals[:, :, 0] += direct_input
+    places = np.arange(NODES)
+    signals[:, :, n + 1 :].reshape(q + 1, NODES, q, NODES)[:, places, :, places] += outer * direct
+    if inner:
+        signals += np.tensordot(direct[:, inner], solved[of_states:].reshape(len(inner), NODES, columns), 1)
     return step
+
+
+def _kron(one, other):
+    """The Kronecker product of two matrices, quicker than NumPy's for small ones."""
+    blocks = one[:, None, :, None] * other[:, None]
+    return blocks.reshape(one.shape[0] * other.shape[0], one.shape[1] * other.shape[1])
 
 
 class _Radau:
     """Nodes between -1 and 1, the last at 1; matrices to Legendre coefficients, and of integrals from the beginning."""
 
-    def __init__(self, count):
-        series = np.zeros(count + 1)
-        series[-2:] = 1, -1
+    def __init__(self):
+        series = np.r_[np.zeros(NODES - 1), 1, -1]
         nodes = np.sort(legendre.legroots(series).real)
         for _ in range(3):
             nodes = nodes - legendre.legval(nodes, series) / legendre.legval(nodes, legendre.legder(series))
         nodes[-1] = 1.0
-        values = legendre.legvander(nodes, count)
-        degree = np.arange(count)
+        values = legendre.legvander(nodes, NODES)
         self.nodes, self.nodes_list = nodes, nodes.tolist()
-        self.to_coefficients = np.linalg.inv(values[:, :count])  # more exact than by the weights
-        self.high = self.to_coefficients[count // 2 :].T.copy()
+        self.to_coefficients = np.linalg.inv(values[:, :-1])  # more exact than by the weights
+        self.high = self.to_coefficients[NODES // 2 :].T.copy()
         # the integral of P_m from -1 is (P_{m+1} - P_{m-1})/(2m + 1)
-        integrals = np.empty((count, count))
-        integrals[:, 0] = nodes + 1
-        integrals[:, 1:] = (values[:, 2:] - values[:, :-2]) / (2 * degree[1:] + 1)
+        integrals = np.c_[nodes + 1, (values[:, 2:] - values[:, :-2]) / (2 * np.arange(1, NODES) + 1)]
         self.integration = integrals @ self.to_coefficients
-        differences = nodes[:, None] - nodes + np.eye(count)
+        differences = nodes[:, None] - nodes + np.eye(NODES)
         self.barycentric = 1 / (2 * differences).prod(axis=1)  # a factor 2, near the capacity
 
 
-@functools.cache
-def radau() -> _Radau:
-    return _Radau(NODES)
+radau = functools.cache(_Radau)
 
 
 def interpolation(places: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ sharp a resonance is.
 
 from __future__ import annotations
 
+import functools
 import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,7 +16,7 @@ import numpy as np
 
 from loopbook.quasipolynomials import DelayFraction
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term
+from loopbook.quasipolynomials.fraction import Quasipolynomial, earlier, lowest_term, plus
 from loopbook.stability.counting import above_origin
 from loopbook.stability.enclosures import Enclosure, Exact, enclosed
 
@@ -94,7 +95,6 @@ def frequency_curve(
     values, phases = ([row[kept] for row in rows] for rows in (values, phases))
     delay = above.delay - below.delay
     for _ in range(60):
-        a, b = slice(None, -1), slice(1, None)
         turn = phases[0] - phases[1] - delay * grid
         with np.errstate(divide="ignore"):
             height = np.log10(abs(values[0])) - np.log10(abs(values[1]))
@@ -105,19 +105,17 @@ def frequency_curve(
             missing |= abs(np.diff(phase)) > 3 * STEP
         if coarse is not None:
             H_there = values[0] / values[1] * np.exp(-1j * delay * grid)
-            missing |= coarse(H_there[a], H_there[b])
-        missing &= ~is_gap & (np.diff(grid) > 4 * NARROWEST * grid[b])
+            missing |= coarse(H_there[:-1], H_there[1:])
+        missing &= ~is_gap & (np.diff(grid) > 4 * NARROWEST * grid[1:])
         where = np.flatnonzero(missing)
         if not len(where) or len(grid) > MOST_POINTS:
             break
         middle = (grid[where] + grid[where + 1]) / 2
-        there = [side(middle) for side in sides]
-        between = [
-            phase[where] + np.angle(new / at[where]) for phase, at, new in zip(phases, values, there, strict=True)
-        ]
+        for n, side in enumerate(sides):
+            there = side(middle)
+            between = phases[n][where] + np.angle(there / values[n][where])
+            values[n], phases[n] = np.insert(values[n], where + 1, there), np.insert(phases[n], where + 1, between)
         grid, is_gap = np.insert(grid, where + 1, middle), np.insert(is_gap, where, False)
-        values = [np.insert(at, where + 1, new) for at, new in zip(values, there, strict=True)]
-        phases = [np.insert(phase, where + 1, new) for phase, new in zip(phases, between, strict=True)]
     phase = np.degrees(phases[0] - phases[1] - delay * grid) - (180 if above.sign != below.sign else 0)
     gaps = np.flatnonzero(is_gap)
     omega = np.insert(grid, gaps + 1, (grid[gaps] + grid[gaps + 1]) / 2)
@@ -130,9 +128,8 @@ class _OnAxis:
     """A quasipolynomial q(w) = Q(jw) without its shortest dead time."""
 
     def __init__(self, parts: Quasipolynomial, scale: int):
-        shortest = min(parts)
-        parts = {delay - shortest: part for delay, part in parts.items()}
-        self.delay, (self.power, lowest) = float(shortest), lowest_term(parts)
+        self.delay, (self.power, lowest) = float(min(parts)), lowest_term(parts)
+        parts = earlier(parts, min(parts))
         self.sign = 1 if lowest > 0 else -1
         order = max(map(len, parts.values())) - 1
         self.sums = Quasipolynomials.exact(parts, order, scale)
@@ -166,7 +163,6 @@ def _followed(sides: list[_OnAxis], grid: np.ndarray) -> tuple[np.ndarray, np.nd
     """The grid so fine that each side is followed from point to point, and which intervals are gaps with a zero."""
     points, gaps = [grid], []
     a, b = grid[:-1], grid[1:]
-    count = len(grid)
     while len(a):
         open_, empty = np.zeros((2, len(a)), dtype=bool)
         for side in sides:
@@ -182,8 +178,7 @@ def _followed(sides: list[_OnAxis], grid: np.ndarray) -> tuple[np.ndarray, np.nd
         c = (a + b) / 2
         points.append(c)
         a, b = np.r_[a, c], np.r_[c, b]
-        count += len(c)
-        if count > MOST_POINTS:
+        if sum(map(len, points)) > MOST_POINTS:
             raise ValueError(
                 f"the curve turns too often between {grid[0]:g} and {grid[-1]:g} rad per unit of time: "
                 f"expected a narrower range of frequencies"
@@ -239,49 +234,29 @@ def natural_range(systems: Iterable[DelayFraction], also: Iterable[float] = ()) 
 
 
 def _own_range(H: DelayFraction) -> tuple[float, float]:
-    corners, sharp, delays = [], [], [float(delay) for delay in H.delays]
-    for parts in (H.numerator, H.denominator):
-        for root in _roots_without_delay(parts):
-            corners.append(abs(root))
-            if abs(root.real) < SHARP * abs(root):
-                sharp.append(abs(root))
-    corners += [1 / delay for delay in delays]
+    delays = [float(delay) for delay in H.delays]
+    roots = [root for parts in (H.numerator, H.denominator) for root in _roots_without_delay(parts)]
+    sharp = [abs(root) for root in roots if abs(root.real) < SHARP * abs(root)]
+    corners = [*map(abs, roots), *(1 / delay for delay in delays)]
     if not corners:
         return 0.1, 10.0
-    low, high = min(corners) / 10, 10 * max(corners)
-    if delays:
-        high = min(high, max([TURNS / max(delays), *(3 * w for w in sharp)]))
-    return low, high
+    turned = max([TURNS / max(delays), *(3 * w for w in sharp)]) if delays else math.inf
+    return min(corners) / 10, min(10 * max(corners), turned)
 
 
 def _roots_without_delay(parts: Quasipolynomial) -> list[complex]:
     """The roots of a quasipolynomial's first part, and of all its parts, with either sign of what comes later."""
-    if not parts:
-        return []
-    first, *later = (part for _, part in sorted(parts.items()))
-    sums = [list(first)]
-    for sign in (1, -1) if later else ():
-        total = [0] * max(map(len, (first, *later)))
-        for factor, part in [(1, first), *((sign, part) for part in later)]:
-            for k, c in enumerate(part):
-                total[k] += factor * c
-        sums.append(total)
-    found = []
-    for coefficients in sums:
-        while coefficients and not coefficients[-1]:
-            coefficients.pop()
-        while coefficients and not coefficients[0]:
-            del coefficients[0]
-        if len(coefficients) > 1:
-            found += np.roots([c / coefficients[-1] for c in reversed(coefficients)]).tolist()
-    return found
+    first, *later = [{Fraction(0): part} for _, part in sorted(parts.items())] or [{}]
+    late = functools.reduce(plus, later, {})
+    sums = [first, plus(first, late), plus(first, late, -1)] if later else [first]
+    scaled = [[c / part[-1] for c in reversed(part)] for total in sums for part in total.values()]
+    return [root for coefficients in scaled for root in np.roots(coefficients).tolist() if root]
 
 
 def _round_number(value: float, up: bool) -> float:
     """The next 1, 2 or 5 times a power of ten."""
-    decade = 10.0 ** math.floor(math.log10(value))
-    if up:
-        step = next(x for x in (1, 2, 5, 10) if x * decade >= value * (1 - 1e-9))
-    else:
-        step = next(x for x in (5, 2, 1) if x * decade <= value * (1 + 1e-9))
-    return float(f"{step * decade:.6g}")
+    numbers = [x * 10.0 ** math.floor(math.log10(value)) for x in (1, 2, 5, 10)]
+    found = (
+        min(x for x in numbers if x >= value * (1 - 1e-9)) if up else max(x for x in numbers if x <= value * (1 + 1e-9))
+    )
+    return float(f"{found:.6g}")

@@ -37,6 +37,8 @@ LOWEST = 1e-8  # of the magnitude at low frequencies: what is drawn at least
 WHOLE = 3.0  # magnitude up to which a Nyquist plot shows a whole curve
 FLATTEST = 0.6, 0.75  # the least and the greatest height of a Nyquist plot beside its width
 NEAR = 1.6  # otherwise the part of it below this
+STILL = {"scalex": False, "scaley": False}  # what is marked does not change the limits
+BAR = {"linewidth": 2.4, "marker": "_", "markersize": 9, "markeredgewidth": 2, "zorder": 4, **STILL}
 
 
 # ------------------------------------------------------------------------------------------------ Bode
@@ -77,8 +79,7 @@ def bode_plot(
     >>> bode_plot(L, margins=margins(L), title="An integrator")
     <An integrator: magnitude and phase [deg] against omega [rad/s]; gain margin 3.14, phase margin 61.4°>
     """
-    fractions = _fractions(H)
-    _of_one(margins, fractions)
+    fractions = _fractions(H, margins)
     low, high = _range(fractions, omega, margins)
     curves = {label: frequency_curve(fraction, low, high) for label, fraction in fractions.items()}
 
@@ -101,82 +102,74 @@ def bode_plot(
             decades(above.yaxis, bottom, top)
         above.set_ylim(bottom, top)
         decades(below.xaxis, low, high)
-        _degrees(below, *_phases(curves.values(), with_half_turn=margins is not None))
-        above.set_ylabel("magnitude [dB]" if db else "magnitude")
-        below.set_ylabel("phase [deg]")
-        below.set_xlabel(rf"$\omega$ [rad/{unit}]")
-        above.set_title(title or "")
+        _degrees(below, curves.values(), with_half_turn=margins is not None)
+        above.set(ylabel="magnitude [dB]" if db else "magnitude", title=title or "")
+        below.set(ylabel="phase [deg]", xlabel=rf"$\omega$ [rad/{unit}]")
         figure.align_ylabels([above, below])
         if len(curves) > 1:
             free_legend(above)
         if margins is not None:
-            ((fraction, curve),) = zip(fractions.values(), curves.values(), strict=True)
+            (fraction,), (curve,) = fractions.values(), curves.values()
             _bode_margins(above, below, fraction, curve, margins, size, unit)
-    words = "magnitude and phase [deg] against omega " + f"[rad/{unit}]"
-    names = f"{', '.join(map(plain_words, curves))}: " if len(curves) > 1 else ""
-    return Picture(figure, _alt(title, f"{names}{words}", margins))
+    return Picture(figure, _alt(title, curves, f"magnitude and phase [deg] against omega [rad/{unit}]", margins))
 
 
 def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
+    (left, right), bottom, top = above.get_xlim(), above.get_ylim()[0], below.get_ylim()[1]
+    one, labels, half_turns = float(size(1.0)), [], set()
+    above.axhline(one, **LEVEL)
+
     def phase_at(w):
-        about = np.interp(math.log(w), *_finite(np.log(curve.omega), curve.phase))
+        known = np.isfinite(curve.phase)
+        about = np.interp(math.log(w), np.log(curve.omega[known]), curve.phase[known])
         angle = math.degrees(np.angle(H(1j * w)))
         return angle + 360 * round((about - angle) / 360)
 
-    (left, right), bottom = above.get_xlim(), above.get_ylim()[0]
-    top_of_phase = below.get_ylim()[1]
-    one = float(size(1.0))
-    above.axhline(one, **LEVEL)
-    still = {"scalex": False, "scaley": False}
-    bar = {"linewidth": 2.4, "marker": "_", "markersize": 9, "markeredgewidth": 2, "zorder": 4, **still}
-    labels, half_turns = [], set()
+    def mark(w, color, of_bar, bar, of_point, point):
+        of_bar.plot([w, w], bar, color=color, **BAR)
+        of_point.plot([w], [point], "o", color=color, markersize=5, zorder=4, **STILL)
+        magnitudes, phases = (bar, [point]) if of_bar is above else ([point], bar)
+        above.plot([w, w], [min(magnitudes), bottom], **GUIDE)
+        below.plot([w, w], [top, max(phases)], **GUIDE)
+
     of_gain = [("gain margin", margins.gain_margin, margins.omega_180)]
     if margins.gain_reduction > 0 and (w := _crossing(H, curve, 1 / margins.gain_reduction)):
         of_gain.append(("gain reduction", margins.gain_reduction, w))
     for name, value, w in of_gain:
-        if not (math.isfinite(value) and left < w < right):
-            continue
-        there, angle = float(size(H(1j * w))), phase_at(w)
-        above.plot([w, w], [one, there], color=OF_GAIN, **bar)
-        above.plot([w, w], [min(one, there), bottom], **GUIDE)
-        below.plot([w, w], [top_of_phase, angle], **GUIDE)
-        below.plot([w], [angle], "o", color=OF_GAIN, markersize=5, zorder=4, **still)
-        half_turns.add(round(angle))
-        words = f"{name} {_short(size(value))} dB" if size(10.0) == 20 else f"{name} {_short(value)}"
-        labels.append((above, words, (w, one if there < one else there), OF_GAIN, ("above right", "above left")))
+        if math.isfinite(value) and left < w < right:
+            there, angle = float(size(H(1j * w))), phase_at(w)
+            mark(w, OF_GAIN, above, [one, there], below, angle)
+            half_turns.add(round(angle))
+            words = f"{name} {_short(size(value))}{' dB' if one == 0 else ''}"
+            labels.append((above, words, (w, max(one, there)), OF_GAIN, ("above right", "above left")))
     if math.isfinite(margins.phase_margin) and left < margins.omega_c < right:
-        w = margins.omega_c
-        angle = phase_at(w)
+        w, angle = margins.omega_c, phase_at(margins.omega_c)
         half_turn = 360 * round((angle - 180) / 360) + 180
-        below.plot([w, w], [half_turn, angle], color=OF_PHASE, **bar)
-        below.plot([w, w], [top_of_phase, max(angle, half_turn)], **GUIDE)
-        above.plot([w, w], [one, bottom], **GUIDE)
-        above.plot([w], [one], "o", color=OF_PHASE, markersize=5, zorder=4, **still)
+        mark(w, OF_PHASE, below, [half_turn, angle], above, one)
         half_turns.add(half_turn)
         words = _phase_words(margins, unit)
         labels.append((below, words, (w, half_turn), OF_PHASE, ("below left", "above left", "below right")))
     for angle in half_turns or {-180}:
         below.axhline(angle, **LEVEL)
-    for axes, words, point, colour, places in labels:
-        free_place(axes, words, point, places, color=colour)
     if margins.omega_180 == math.inf:
         words = f"gain margin {_short(margins.gain_margin)} at ever higher frequencies"
-        free_place(above, words, (right, one), ("above left", "below left"), color=OF_GAIN)
+        labels.append((above, words, (right, one), OF_GAIN, ("above left", "below left")))
+    for axes, words, point, color, places in labels:
+        free_place(axes, words, point, places, color=color)
 
 
 def _crossing(H, curve, size) -> float | None:
     """The frequency at which the curve crosses the negative real axis at this distance from zero."""
     from scipy.optimize import brentq
 
-    turns = np.floor((curve.phase + 180) / 360)
-    nearest, found = 0.01 * size, None
+    turns, found = np.floor((curve.phase + 180) / 360), []
     for k in np.flatnonzero(np.diff(turns)):
         a, b = curve.omega[k : k + 2].tolist()  # as brentq takes them: an array's item is computed otherwise
         if np.isfinite(turns[k : k + 2]).all() and H(1j * a).imag * H(1j * b).imag < 0:
-            w = brentq(lambda w: H(1j * w).imag, a, b, xtol=1e-15 * b)
-            if abs(abs(H(1j * w)) - size) < nearest:
-                nearest, found = abs(abs(H(1j * w)) - size), float(w)
-    return found
+            w = float(brentq(lambda w: H(1j * w).imag, a, b, xtol=1e-15 * b))
+            found.append((abs(abs(H(1j * w)) - size), w))
+    apart, w = min(found, default=(math.inf, None))
+    return w if apart < 0.01 * size else None
 
 
 def _magnitudes(curves, with_one) -> tuple[float, float]:
@@ -197,21 +190,17 @@ def _magnitudes(curves, with_one) -> tuple[float, float]:
     return low / room, high * room
 
 
-def _phases(curves, with_half_turn) -> tuple[float, float]:
-    phases = np.concatenate([curve.phase[np.isfinite(curve.phase)] for curve in curves])
-    low, high = phases.min(), phases.max()
-    if with_half_turn:
-        low, high = min(low, -200.0), max(high, -160.0)
-    room = max(0.08 * (high - low), 0.5 * (90 - high + low), 5.0)
-    return low - room, high + room
-
-
-def _degrees(axes: Axes, low: float, high: float) -> None:
+def _degrees(axes: Axes, curves, with_half_turn) -> None:
     """Angles on the vertical axis, marked at parts or multiples of a half turn."""
     from matplotlib.ticker import FuncFormatter, MultipleLocator
 
-    steps = [15, 45, 90, 180, 360, 720]
-    step = next((x for x in steps if (high - low) / x <= 8), 360 * math.ceil((high - low) / 8 / 360))
+    phases = np.concatenate([curve.phase for curve in curves])
+    low, high = np.nanmin(phases), np.nanmax(phases)
+    if with_half_turn:
+        low, high = min(low, -200.0), max(high, -160.0)
+    room = max(0.08 * (high - low), 0.5 * (90 - high + low), 5.0)
+    low, high = low - room, high + room
+    step = next((x for x in (15, 45, 90, 180, 360, 720) if (high - low) / x <= 8), 360 * math.ceil((high - low) / 2880))
     axes.yaxis.set_major_locator(MultipleLocator(step))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:.0f}".replace("-", "\N{MINUS SIGN}")))
     axes.set_ylim(low, high)
@@ -255,14 +244,11 @@ def nyquist_plot(
     >>> nyquist_plot(L, margins=margins(L))
     <imaginary part against real part; gain margin 3.14, phase margin 61.4°, Ms 1.59>
     """
-    fractions = _fractions(L)
-    _of_one(margins, fractions)
+    fractions = _fractions(L, margins)
     low, high = _range(fractions, omega, margins)
     if omega is None:  # no axis shows the frequency, and the curve is to end near zero
         low, high = low / 100, 3 * high
-    curves = {}
-    for label, fraction in fractions.items():
-        curves[label] = frequency_curve(fraction, low, high, _coarse)
+    curves = {label: frequency_curve(fraction, low, high, _coarse) for label, fraction in fractions.items()}
     (left, right), (bottom, top) = _window(curves.values(), margins)
     with styled():
         _, (axes,) = canvas.panels([(WIDTH - canvas.LEFT - canvas.RIGHT) * (top - bottom) / (right - left)], ax)
@@ -276,21 +262,16 @@ def nyquist_plot(
             axes.plot(x, y, label=label or r"$L(j\omega)$", **line)
             thin = {"linewidth": 0.7, "linestyle": "-", "zorder": 1.8}
             axes.plot(x, -y, label=r"$L(-j\omega)$" if len(curves) == 1 else None, **(line | thin))
-        axes.set_xlim(left, right)
-        axes.set_ylim(bottom, top)
-        axes.set_aspect("equal")
+        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
         for place, curve in enumerate(curves.values()):
             _arrow(axes, curve, look(place)["color"])
         if margins is not None:
             (fraction,) = fractions.values()
             _nyquist_margins(axes, fraction, margins, unit)
         axes.plot([-1], [0], "x", color="#000000", markersize=8, markeredgewidth=1.8, label="$-1$", zorder=5)
-        axes.set_xlabel("real part")
-        axes.set_ylabel("imaginary part")
-        axes.set_title(title or "")
+        axes.set(xlabel="real part", ylabel="imaginary part", title=title or "")
         legend_below(axes)
-    names = f"{', '.join(map(plain_words, curves))}: " if len(curves) > 1 else ""
-    return PlanePlot(axes, _alt(title, f"{names}imaginary part against real part", margins, with_sensitivity=True))
+    return PlanePlot(axes, _alt(title, curves, "imaginary part against real part", margins, with_sensitivity=True))
 
 
 def _coarse(a, b):
@@ -316,14 +297,9 @@ def _window(curves, margins):
             x.append(-1 / margins.gain_reduction)
         if margins.Ms > 1:
             x.append(-1 - min(1 / margins.Ms, 0.9))
-    width, height = max(x) - min(x), max(y) - min(y)
-    x, y = (min(x) - 0.06 * width, max(x) + 0.06 * width), (min(y) - 0.06 * height, max(y) + 0.06 * height)
-    width, height = x[1] - x[0], y[1] - y[0]
-    if width < height / FLATTEST[1]:
-        x = (sum(x) / 2 - height / FLATTEST[1] / 2, sum(x) / 2 + height / FLATTEST[1] / 2)
-    elif height < FLATTEST[0] * width:
-        y = (sum(y) / 2 - FLATTEST[0] * width / 2, sum(y) / 2 + FLATTEST[0] * width / 2)
-    return x, y
+    (x, width), (y, height) = (((max(z) + min(z)) / 2, 1.12 * (max(z) - min(z))) for z in (x, y))
+    width, height = max(width, height / FLATTEST[1]), max(height, FLATTEST[0] * width)
+    return (x - width / 2, x + width / 2), (y - height / 2, y + height / 2)
 
 
 def _arrow(axes, curve, colour) -> None:
@@ -351,31 +327,25 @@ def _arrow(axes, curve, colour) -> None:
 
 
 def _nyquist_margins(axes, L, margins, unit) -> None:
-    still = {"scalex": False, "scaley": False}
-    bar = {"color": OF_GAIN, "linewidth": 2.4, "zorder": 3.5, **still}
-    if math.isfinite(margins.gain_margin):
-        label = f"gain margin {_short(margins.gain_margin)}"
-        axes.plot([-1, -1 / margins.gain_margin], [0, 0], **bar)
-        axes.plot([-1 / margins.gain_margin], [0], "o", color=OF_GAIN, markersize=6, label=label, zorder=4, **still)
-    if margins.gain_reduction > 0:
-        label = f"gain reduction {_short(margins.gain_reduction)}"
-        axes.plot([-1, -1 / margins.gain_reduction], [0, 0], **bar)
-        axes.plot([-1 / margins.gain_reduction], [0], "s", color=OF_GAIN, markersize=6, label=label, zorder=4, **still)
+    for name, value, marker in (("margin", margins.gain_margin, "o"), ("reduction", margins.gain_reduction, "s")):
+        if 0 < value < math.inf:
+            label, of_gain = f"gain {name} {_short(value)}", {"color": OF_GAIN, **STILL}
+            axes.plot([-1, -1 / value], [0, 0], linewidth=2.4, zorder=3.5, **of_gain)
+            axes.plot([-1 / value], [0], marker, markersize=6, label=label, zorder=4, **of_gain)
     if math.isfinite(margins.phase_margin):
         point = L(1j * margins.omega_c)
-        angle = np.angle(point) % (2 * math.pi)
-        arc = np.exp(1j * np.linspace(math.pi, angle, 90))
-        of_phase = {"color": OF_PHASE, **still}
+        arc = np.exp(1j * np.linspace(math.pi, np.angle(point) % (2 * math.pi), 90))
+        of_phase = {"color": OF_PHASE, **STILL}
         axes.plot(arc.real, arc.imag, linewidth=2.4, zorder=3.4, label=_phase_words(margins, unit), **of_phase)
         axes.plot([0, point.real], [0, point.imag], linewidth=1, linestyle=(0, (2, 2)), zorder=1.7, **of_phase)
         axes.plot([point.real], [point.imag], "o", markersize=6, zorder=4, **of_phase)
     if math.isfinite(margins.Ms) and margins.Ms > 0:
         circle = -1 + np.exp(1j * np.linspace(0, 2 * math.pi, 181)) / margins.Ms
         thin = look("disturbance") | {"linewidth": 1.4, "zorder": 1.9}
-        axes.plot(circle.real, circle.imag, label=f"$M_s$ = {_short(margins.Ms)}", **thin, **still)
+        axes.plot(circle.real, circle.imag, label=f"$M_s$ = {_short(margins.Ms)}", **thin, **STILL)
         if math.isfinite(margins.omega_ms):
             near = L(1j * margins.omega_ms)
-            axes.plot([-1, near.real], [0, near.imag], color=thin["color"], linewidth=1.2, zorder=1.9, **still)
+            axes.plot([-1, near.real], [0, near.imag], color=thin["color"], linewidth=1.2, zorder=1.9, **STILL)
 
 
 # ------------------------------------------------------------------------------------------------ step responses
@@ -411,43 +381,34 @@ def step_plot(
     >>> step_plot(H, info=H.step_info(), title="Two poles")
     <Two poles: y(t) against t [s]; overshoot 16.3 %, rise time 1.64 s, settling time 8.08 s>
     """
-    systems = H if isinstance(H, dict) else {"": H}
-    _not_empty(systems)
-    _of_one(info, systems)
+    systems = _labelled(H, info)
     loops = [hasattr(x, "open_fraction") for x in systems.values()]
     if any(loops) and not all(loops):
         raise ValueError("a plot shows loops or systems: expected no systems beside loops")
-    outputs = {label: x.servo if any(loops) else x for label, x in systems.items()}
-    end = positive("the end", end) if end is not None else max(x.horizon(info) for x in outputs.values())
-    controls = {label: x.setpoint_to_control for label, x in systems.items()} if any(loops) else {}
-    shown = [*outputs.values(), *controls.values()]
-    responses = [system.step_until(end) for system in shown]
+    outputs = [x.servo if any(loops) else x for x in systems.values()]
+    end = positive("the end", end) if end is not None else max(x.horizon(info) for x in outputs)
+    controls = [x.setpoint_to_control for x in systems.values()] if any(loops) else []
+    responses = [system.step_until(end) for system in (*outputs, *controls)]
     times = _times(responses, end)
     values = [response(times) for response in responses]
 
     def panel(letter, rows, role):
         if len(systems) == 1:
             return {f"${letter}(t)$": (rows[0], role)}
-        return {
-            label if letter == "y" else f"${letter}$, {label}": row for label, row in zip(systems, rows, strict=True)
-        }
+        names = systems if letter == "y" else [f"${letter}$, {label}" for label in systems]
+        return {name: (row, k) for k, (name, row) in enumerate(zip(names, rows, strict=True))}
 
-    y = panel("y", values[: len(systems)], "measurement")
-    setpoint = {"setpoint": (np.ones(len(times)), "setpoint")} if controls else {}
-    panels = [setpoint | y]
+    panels = [panel("y", values[: len(systems)], "measurement")]
+    first = next(iter(panels[0]))
     if controls:
-        u = panel("u", values[len(systems) :], "control signal")
-        u = {label: (row, k) for k, (label, row) in enumerate(u.items())} if len(systems) > 1 else u
-        panels = [
-            setpoint | {x: (row, k) for k, (x, row) in enumerate(y.items())} if len(systems) > 1 else panels[0],
-            u,
-        ]
+        setpoint = {"setpoint": (np.ones(len(times)), "setpoint")}
+        panels = [setpoint | panels[0], panel("u", values[len(systems) :], "control signal")]
     names = ["$y$", "$u$"][: len(panels)] if controls or len(systems) > 1 else None
     plot = time_plot(panels, times, title=title, xlabel=f"$t$ [{unit}]", ylabel=names, ax=ax)
     if info is not None:
         with styled():
-            found = _mark_info(plot.axes[0], plot.lines[next(iter(y))], info, settling, rise, unit)
-        plot.alt += "".join(f"{'; ' if k == 0 else ', '}{words}" for k, words in enumerate(found))
+            found = _mark_info(plot.axes[0], plot.lines[first], info, settling, rise, unit)
+        plot.alt += f"; {', '.join(found)}" if found else ""
     return plot
 
 
@@ -455,42 +416,37 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
     """Mark what characterises a step response, and return it in words."""
     times, values = line.get_data()
     end, final = times[-1], info.final_value
-    still = {"scalex": False, "scaley": False}
-    found, labels = [], []
-    (bottom, top), size = axes.get_ylim(), abs(info.final_value) or abs(info.peak)
-    sign = -1 if final < 0 else 1
+    size, sign = abs(final) or abs(info.peak), -1 if final < 0 else 1
+    floor, ceiling = axes.get_ylim()[::sign]
     if 0 < info.overshoot < math.inf:  # room for its name
-        bottom, top = (bottom, top + 0.08 * (top - bottom)) if sign > 0 else (bottom - 0.08 * (top - bottom), top)
-    axes.set_ylim(bottom, top)
+        ceiling += 0.08 * (ceiling - floor)
+    axes.set_ylim(*(floor, ceiling)[::sign])
     axes.axhline(final, **LEVEL)
     axes.axhspan(final - settling * size, final + settling * size, color="#eeeeee", zorder=0.4)
-    bar = {"linewidth": 2.4, "marker": "_", "markersize": 9, "markeredgewidth": 2, "zorder": 4, **still}
+    labels = []
     if info.overshoot > 0 and info.peak_time <= end:
-        found.append(f"overshoot {_short(100 * info.overshoot)} %")
-        axes.plot([info.peak_time] * 2, [final, info.peak], color=OF_GAIN, **bar)
+        axes.plot([info.peak_time] * 2, [final, info.peak], color=OF_GAIN, **BAR)
         places = ("above right", "above", "right") if sign > 0 else ("below right", "below", "right")
-        labels.append((found[-1], (info.peak_time, info.peak), places, OF_GAIN))
+        words = f"overshoot {_short(100 * info.overshoot)} %"
+        labels.append((words, (info.peak_time, info.peak), places, OF_GAIN))
     if math.isfinite(info.rise_time):
         start, finish = (times[np.argmax(sign * values >= share * abs(final))] for share in rise)
-        found.append(f"rise time {_short(info.rise_time)} {unit}")
-        floor = bottom if sign > 0 else top
         level = floor + 0.06 * (final - floor)
         for moment, share in ((start, rise[0]), (finish, rise[1])):
             axes.plot([moment] * 2, [floor, share * final], **GUIDE)
-            axes.plot([moment], [share * final], "o", color="#000000", markersize=4, zorder=4, **still)
-        axes.plot([start, finish], [level, level], color="#000000", marker="|", markersize=7, linewidth=1.4, **still)
-        labels.append((found[-1], (finish, level), ("right", "above right"), "#000000"))
+            axes.plot([moment], [share * final], "o", color="#000000", markersize=4, zorder=4, **STILL)
+        axes.plot([start, finish], [level, level], color="#000000", marker="|", markersize=7, linewidth=1.4, **STILL)
+        words = f"rise time {_short(info.rise_time)} {unit}"
+        labels.append((words, (finish, level), ("right", "above right"), "#000000"))
     if 0 < info.settling_time <= end:
-        found.append(f"settling time {_short(info.settling_time)} {unit}")
         there = np.interp(info.settling_time, times, values)
-        floor = bottom if sign > 0 else top
         axes.plot([info.settling_time] * 2, [floor, there], **GUIDE)
-        axes.plot([info.settling_time], [there], "o", color="#000000", markersize=5, zorder=4, **still)
-        middle = floor + 0.45 * (final - floor)
-        labels.append((found[-1], (info.settling_time, middle), ("left", "right"), "#000000"))
+        axes.plot([info.settling_time], [there], "o", color="#000000", markersize=5, zorder=4, **STILL)
+        words, middle = f"settling time {_short(info.settling_time)} {unit}", floor + 0.45 * (final - floor)
+        labels.append((words, (info.settling_time, middle), ("left", "right"), "#000000"))
     for words, point, places, colour in labels:
         free_place(axes, words, point, places, color=colour)
-    return found
+    return [words for words, *_ in labels]
 
 
 def _times(responses, end):
@@ -510,20 +466,18 @@ def _times(responses, end):
 # ------------------------------------------------------------------------------------------------ common
 
 
-def _fractions(H) -> dict[str, DelayFraction]:
+def _labelled(H, marks) -> dict[str, object]:
     systems = H if isinstance(H, dict) else {"": H}
-    _not_empty(systems)
-    return {label: x.open_fraction if hasattr(x, "open_fraction") else read(x) for label, x in systems.items()}
-
-
-def _not_empty(systems) -> None:
     if not systems:
         raise ValueError("the systems are {}: expected one or more")
-
-
-def _of_one(marks, systems) -> None:
     if marks is not None and len(systems) > 1:
         raise ValueError(f"marks of one system beside {len(systems)}: expected one system, or no margins and no info")
+    return systems
+
+
+def _fractions(H, marks) -> dict[str, DelayFraction]:
+    systems = _labelled(H, marks).items()
+    return {label: x.open_fraction if hasattr(x, "open_fraction") else read(x) for label, x in systems}
 
 
 def _range(fractions, omega, margins) -> tuple[float, float]:
@@ -536,17 +490,9 @@ def _range(fractions, omega, margins) -> tuple[float, float]:
     return float(omega[0]), float(omega[-1])
 
 
-def _finite(x, y):
-    known = np.isfinite(y)
-    return x[known], y[known]
-
-
 def _short(value: float) -> str:
     """Three digits, without a power of ten where none is needed."""
-    if not math.isfinite(value) or not 1e-4 <= abs(value) < 1e5:
-        return f"{value:.3g}"
-    rounded = float(f"{value:.3g}")
-    return f"{rounded:g}" if abs(value) < 1e3 else f"{value:.0f}"
+    return f"{value:.0f}" if 999.5 <= abs(value) < 1e5 else f"{value:.3g}"
 
 
 def _phase_words(margins, unit) -> str:
@@ -557,13 +503,14 @@ def _phase_words(margins, unit) -> str:
     return words
 
 
-def _alt(title, words, margins, with_sensitivity=False) -> str:
+def _alt(title, curves, words, margins, with_sensitivity=False) -> str:
+    if len(curves) > 1:
+        words = f"{', '.join(map(plain_words, curves))}: {words}"
     if margins is not None:
         marks = [f"gain margin {_short(margins.gain_margin)}"]
         if margins.gain_reduction > 0:
             marks.append(f"gain reduction {_short(margins.gain_reduction)}")
-        angle = f"{_short(margins.phase_margin)}°" if math.isfinite(margins.phase_margin) else "inf"
-        marks.append(f"phase margin {angle}")
+        marks.append(f"phase margin {_short(margins.phase_margin)}{'°' if math.isfinite(margins.phase_margin) else ''}")
         if with_sensitivity:
             marks.append(f"Ms {_short(margins.Ms)}")
         words = f"{words}; {', '.join(marks)}"

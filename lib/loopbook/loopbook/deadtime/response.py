@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import legendre
 
-from loopbook.deadtime.channels import ChannelModel
+from loopbook.deadtime.breaking_points import ROUNDED
 from loopbook.deadtime.collocation import NODES, follow
-from loopbook.deadtime.echoes import ROUNDED
+from loopbook.deadtime.state_space import ChannelModel
 from plainmath.validation import not_negative, times_from_zero
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ class Response:
         end: the time up to which the response is wanted.
     Attributes:
         edges: the ends of the segments, an array; the last one is at `end`, or later if a segment begins there.
+        coefficients: of the Legendre polynomials, an array with a row for each segment.
     Raises:
         ValueError: for an end that is none; where the response would take about two seconds (60,000 segments with one
             dead time), where its dead times have more than 30,000 sums at which it is not smooth, or where it
@@ -47,23 +48,25 @@ class Response:
     """
 
     edges: np.ndarray
+    coefficients: np.ndarray
 
     def __init__(self, model: ChannelModel, end: float):
         end = not_negative("end", end)
         model = model._replace(delays=[Fraction(delay) for delay in model.delays])
-        self.edges, self._coefficients = follow(model, end)
+        self.edges, self.coefficients = follow(model, end)
 
     def __call__(self, times: ArrayLike) -> np.ndarray:
         """Return the values at the given times, at a jump the one after it."""
         times = times_from_zero(times)
-        edges = self.edges
-        if times.size and times.max() > edges[-1]:
-            raise ValueError(f"t = {times.max():g} is later than {edges[-1]:g}, the end of the response")
+        if times.size and times.max() > self.edges[-1]:
+            raise ValueError(f"t = {times.max():g} is later than {self.edges[-1]:g}, the end of the response")
         # a time that is an edge but for rounding belongs to the segment that begins there
-        index = np.searchsorted(edges, times * (1 + float(ROUNDED)), side="right") - 1
-        index = np.clip(index, 0, len(edges) - 2)
-        length = edges[index + 1] - edges[index]
-        return legendre.legval(2 * (times - edges[index]) / length - 1, self._coefficients.T[:, index], tensor=False)
+        return series(self.coefficients.T, *self.located(times, times * float(ROUNDED)))
+
+    def located(self, times: np.ndarray, late: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        """The segment of each time, that after an edge from a little before it on, and the place in it from -1 to 1."""
+        index = np.clip(np.searchsorted(self.edges, times + late, side="right") - 1, 0, len(self.edges) - 2)
+        return index, 2 * (times - self.edges[index]) / (self.edges[index + 1] - self.edges[index]) - 1
 
     def quadrature(self, longest: float = math.inf) -> tuple[np.ndarray, np.ndarray]:
         """Return times and weights, two arrays with a row for each interval, for integrals over the response.
@@ -75,11 +78,8 @@ class Response:
             longest: no interval is longer; by itself each is a segment. For integrals of what is not smooth, as of the
                 size of an error, short ones are more exact.
 
-        >>> import numpy as np
-        >>> one = np.ones((1, 1))
-        >>> none = np.zeros((1, 0))
-        >>> lag = ChannelModel(-one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
-        >>> times, weights = Response(lag, 5).quadrature(longest=0.5)
+        >>> from loopbook import System, s
+        >>> times, weights = System(1 / (s + 1)).step_until(5).quadrature(longest=0.5)
         >>> times.shape, round(float(weights.sum()), 12)
         ((10, 20), 5.0)
         """
@@ -90,7 +90,13 @@ class Response:
         half = np.diff(edges)[:, None] / 2
         return edges[:-1, None] + half * (nodes + 1), half * weights
 
-    @property
-    def coefficients(self) -> np.ndarray:
-        """The coefficients of the Legendre polynomials, an array with a row for each segment."""
-        return self._coefficients
+
+def series(rows: np.ndarray, index: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """The values of Legendre series, those of the columns `index`, by Clenshaw's recursion.
+
+    NumPy's own would have the coefficients of each place in memory.
+    """
+    high, low = np.zeros_like(places), rows[-1][index]
+    for k in range(len(rows) - 2, -1, -1):
+        high, low = low, rows[k][index] + (2 * k + 1) / (k + 1) * places * low - (k + 1) / (k + 2) * high
+    return low

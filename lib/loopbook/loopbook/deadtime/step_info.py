@@ -79,16 +79,9 @@ def step_info(
         return StepInfo(math.nan, settled, math.nan, math.nan, float(peak), float(peak_time), 0.0)
     beyond, opposite = (top, bottom) if final > 0 else (bottom, top)
     over, under = beyond / abs(final) - 1, opposite / abs(final)
+    over, under = over if over > ROUNDING else 0.0, under if under > ROUNDING * abs(peak / final) else 0.0
     start, end = (first_time_at(response, share * final) for share in (low, high))
-    return StepInfo(
-        end - start,
-        settled,
-        float(over if over > ROUNDING else 0.0),
-        float(under if under > ROUNDING * abs(peak / final) else 0.0),
-        float(peak),
-        float(peak_time),
-        float(final),
-    )
+    return StepInfo(*map(float, (end - start, settled, over, under, peak, peak_time, final)))
 
 
 def settled_response(
@@ -102,8 +95,8 @@ def settled_response(
     end = horizon
     for _ in range(MOST_DOUBLINGS):
         response = response_until(end)
-        sizes = abs(response.coefficients).sum(axis=1)
-        away = abs(response.coefficients[:, 0] - final) + sizes - abs(response.coefficients[:, 0])
+        first, sizes = response.coefficients[:, 0], abs(response.coefficients).sum(axis=1)
+        away = abs(first - final) + sizes - abs(first)
         band = settling * (abs(final) or sizes.max(initial=0.0))
         if (away[response.edges[1:] > end / 4] <= band / 5).all():
             return response
@@ -115,7 +108,7 @@ def _extreme(response: Response, sign: int) -> tuple[float, float]:
     """The largest value of ``sign*response`` and when it is reached."""
     rows = sign * response.coefficients
     bounds = rows[:, 0] + abs(rows[:, 1:]).sum(axis=1)
-    points = np.r_[-1.0, np.polynomial.legendre.leggauss(rows.shape[1])[0], 1.0]
+    points = np.r_[-1.0, legendre.leggauss(rows.shape[1])[0], 1.0]
     values = legendre.legval(points, rows.T)
     segment, point = np.unravel_index(values.argmax(), values.shape)
     best, place = values[segment, point], (segment, points[point])
@@ -135,7 +128,7 @@ def first_time_at(response: Response, level: float) -> float:
     rows = sign * response.coefficients.copy()
     rows[:, 0] -= abs(level)
     for k in np.flatnonzero(rows[:, 0] + abs(rows[:, 1:]).sum(axis=1) >= 0):
-        if legendre.legval(-1.0, rows[k]) >= -ROUNDING * abs(rows[k]).max():
+        if legendre.legval(-1.0, rows[k]) >= -ROUNDING * max(abs(level), abs(rows[k]).max()):
             return float(response.edges[k])
         if len(found := zeros_of(rows[k])):
             return _moment(response, k, found.min())
@@ -147,13 +140,9 @@ def _last_time_outside(response: Response, final: float, band: float) -> float:
     rows = response.coefficients.copy()
     rows[:, 0] -= final
     for k in np.flatnonzero(abs(rows).sum(axis=1) > band)[::-1]:
-        crossings = []
-        for side in (-1, 1):
-            row = rows[k].copy()
-            row[0] += side * band
-            crossings += zeros_of(row).tolist()
-        if crossings:
-            return _moment(response, k, max(crossings))
+        crossings = np.concatenate([zeros_of(legendre.legadd(rows[k], [side])) for side in (-band, band)])
+        if len(crossings):
+            return _moment(response, k, crossings.max())
         if abs(rows[k].sum()) > band:  # until a jump at the end of the segment
             return float(response.edges[k + 1])
     return 0.0

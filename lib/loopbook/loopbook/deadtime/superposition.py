@@ -8,21 +8,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import legendre
 
-from loopbook.deadtime.channels import ChannelModel
+from loopbook.deadtime.breaking_points import ROUNDED
 from loopbook.deadtime.collocation import NODES
-from loopbook.deadtime.echoes import ROUNDED
-from loopbook.deadtime.response import Response
+from loopbook.deadtime.response import Response, series
 from plainmath.validation import increasing, one_of, real_numbers
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from loopbook.deadtime.state_space import ChannelModel
 
 __all__ = ["response_to_samples"]
 
 HOLDS = ("zero order", "first order")
 MOST_PAIRS = 20_000_000  # of uneven samples, which are taken one by one: about five seconds
 CHUNK = 100_000
-LEAF = 256  # samples that are taken directly
+LEAF = 256  # samples that are taken directly, a power of two
 
 
 def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hold: str = "zero order") -> np.ndarray:
@@ -39,10 +40,8 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
     Raises:
         ValueError: for arrays that do not fit, another hold, more than 6,324 uneven times, or as `Response`.
 
-    >>> import numpy as np
-    >>> one = np.ones((1, 1))
-    >>> none = np.zeros((1, 0))
-    >>> integrator = ChannelModel(0 * one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
+    >>> from loopbook import System, s
+    >>> integrator = System(1 / s).state_space()
     >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0])[1:].round(6)
     array([1., 5.])
     >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0], hold="first order")[1:].round(6)
@@ -58,36 +57,34 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
         return u * response(since)
     late = float(ROUNDED) * 8 * abs(times).max()  # how far a difference of times may be from a jump that is meant
     even = np.linspace(0.0, since[-1], len(since))
-    if abs(since - even).max() <= late:
-        return _evenly(response, even, u, hold == "first order", late)
-    return _unevenly(response, since, u, hold == "first order", late)
+    is_even = abs(since - even).max() <= late
+    times = even if is_even else since
+    return (_evenly if is_even else _unevenly)(response, late, times, u, hold == "first order")
 
 
-def _unevenly(response, times, u, lines, late):
+def _unevenly(response, late, times, u, lines):
     """The values at times of any distances, as a sum over all pairs of them."""
     count = len(times)
     if count**2 > 2 * MOST_PAIRS:
         most = math.isqrt(2 * MOST_PAIRS)
         raise ValueError(f"the times are {count} at uneven distances: expected even ones, or {most} at the most")
-    piece = _Piece(response, times[-1], late)
     changes = np.diff(u, prepend=0.0)
     slopes = changes[1:] / np.diff(times)
-    total = u[0] * piece.values(times) if lines else np.zeros(count)
+    total = u[0] * _values(response, times, late) if lines else np.zeros(count)
     rows = max(1, CHUNK // count)
     for begin in range(0, count, rows):
         end = min(begin + rows, count)
         ago = times[begin:end, None] - times[:end]
         if lines:
-            total[begin:end] += piece.integrals(np.maximum(ago, 0.0)) @ slopes[: end - 1]
+            total[begin:end] += _integrals(response, np.maximum(ago, 0.0), late) @ slopes[: end - 1]
         else:
-            total[begin:end] = piece.values(ago) @ changes[:end]
+            total[begin:end] = _values(response, ago, late) @ changes[:end]
     return total
 
 
-def _evenly(response, times, u, lines, late):
+def _evenly(response, late, times, u, lines):
     """The values at times of one distance, by what a pulse of one sample does."""
-    piece = _Piece(response, times[-1], late)
-    step = piece.values(times)
+    step = _values(response, times, late)
     if not lines:
         return _causal(np.diff(step, prepend=0.0), u)
     # a straight line is a step for each of its moments: means of the step response between samples
@@ -98,7 +95,7 @@ def _evenly(response, times, u, lines, late):
     nodes, weights = legendre.leggauss(NODES // 2)
     lengths = np.diff(points)
     places = (points[:-1, None] + lengths[:, None] * (nodes + 1) / 2) * width
-    integrals = (piece.values(places.ravel()).reshape(places.shape) @ weights) * lengths / 2
+    integrals = (_values(response, places, late) @ weights) * lengths / 2
     means = np.bincount(points[:-1].astype(int), integrals, len(times) - 1)
     pulses = np.diff(means, prepend=0.0)
     return u[0] * (step - np.r_[0.0, means]) + np.r_[0.0, _causal(pulses, u[1:])]
@@ -106,63 +103,31 @@ def _evenly(response, times, u, lines, late):
 
 def _causal(kernel, u):
     """The convolution of two arrays from their beginnings, each value as exact as those up to it are large."""
-    from scipy import linalg, signal
+    from scipy.signal import fftconvolve
 
     count, result = len(u), np.zeros(len(u))
-    size = min(LEAF, count)
-    corner = linalg.toeplitz(kernel[:size], np.zeros(size))
-    for begins in range(0, count, size):
-        number = begins // size
-        ends = min(count, begins + size)
-        if number:
-            reach = size * (number & -number)  # of what came before, as much as fits into a power of two
+    for begins in range(0, count, LEAF):
+        ends = min(count, begins + LEAF)
+        if begins:
+            reach = begins & -begins  # of what came before, as much as fits into a power of two
             ends_there = min(count, begins + reach)
-            there = signal.fftconvolve(u[begins - reach : begins], kernel[: reach + ends_there - begins])
+            there = fftconvolve(u[begins - reach : begins], kernel[: reach + ends_there - begins])
             result[begins:ends_there] += there[reach : reach + ends_there - begins]
-        length = ends - begins
-        result[begins:ends] += corner[:length, :length] @ u[begins:ends]
+        result[begins:ends] += np.convolve(kernel[: ends - begins], u[begins:ends])[: ends - begins]
     return result
 
 
-class _Piece:
-    """The step response up to a time, zero before the beginning, and its integrals."""
-
-    def __init__(self, response, end, late):
-        after = min(len(response.edges) - 1, int(np.searchsorted(response.edges, end)) + 1)
-        self.edges, self.late = response.edges[: after + 1], late
-        self.coefficients, self.scale = response.coefficients[:after].T, 2 / np.diff(self.edges)
-        seen = np.flatnonzero((abs(self.coefficients) > 1e-17 * abs(self.coefficients).max()).any(axis=1))
-        self.coefficients = self.coefficients[: seen.max(initial=0) + 1]
-
-    def _places(self, ago):
-        """The segments, and the places in them from -1 to 1."""
-        index = np.clip(np.searchsorted(self.edges, ago + self.late, side="right") - 1, 0, len(self.edges) - 2)
-        return index, (ago - self.edges[index]) * self.scale[index] - 1
-
-    def values(self, ago):
-        value = _series(self.coefficients, *self._places(ago))
-        value[ago < -self.late] = 0.0
-        return value
-
-    def integrals(self, ago):
-        """The integrals between moments that follow one another along the last axis, from the later to the earlier.
-
-        Within a segment they are counted from its beginning, so that short ones do not get lost in the whole.
-        """
-        index, places = self._places(ago)
-        rows = legendre.legint(self.coefficients, lbnd=-1) / self.scale
-        inside = _series(rows, index, places)
-        before = np.r_[0.0, np.cumsum(rows.sum(axis=0))][index]
-        return (inside[..., :-1] - inside[..., 1:]) + (before[..., :-1] - before[..., 1:])
+def _values(response, ago, late):
+    """The step response so long ago, zero before the beginning."""
+    return np.where(ago < -late, 0.0, series(response.coefficients.T, *response.located(ago, late)))
 
 
-def _series(rows, index, place):
-    """The values of Legendre series, those of the columns `index`, by Clenshaw's recursion."""
-    last = len(rows) - 1
-    high, low = np.zeros_like(place), rows[last][index]
-    for degree in range(last - 1, -1, -1):
-        high, low = (
-            low,
-            rows[degree][index] + (2 * degree + 1) / (degree + 1) * place * low - (degree + 1) / (degree + 2) * high,
-        )
-    return low
+def _integrals(response, ago, late):
+    """Its integrals between moments that follow one another along the last axis, from the later to the earlier.
+
+    Within a segment they are counted from its beginning, so that short ones do not get lost in the whole.
+    """
+    index, places = response.located(ago, late)
+    rows = legendre.legint(response.coefficients.T, lbnd=-1) * (np.diff(response.edges) / 2)
+    inside, before = series(rows, index, places), np.r_[0.0, np.cumsum(rows.sum(axis=0))][index]
+    return -np.diff(inside) - np.diff(before)

@@ -5,21 +5,19 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-from fractions import Fraction
 from typing import TYPE_CHECKING, Self, overload
 
 import numpy as np
 import sympy
 
-from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.deadtime.response import Response
-from loopbook.deadtime.schwarz import companion_form, schwarz_form
+from loopbook.deadtime.state_space import ChannelModel, state_space
 from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_response, step_info
 from loopbook.deadtime.superposition import response_to_samples
 from loopbook.laplace import transform
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, plus
+from loopbook.quasipolynomials.fraction import ZERO, Quasipolynomial, plus
 from loopbook.stability import is_stable
 from loopbook.stability import margins as margins_of
 from loopbook.stability.poles import dominant_roots
@@ -36,9 +34,6 @@ if TYPE_CHECKING:
 __all__ = ["System", "closed_loop"]
 
 DIFFERENTIATOR = read(s)
-
-#: From this order on a companion matrix loses too many digits.
-HIGH_ORDER = 12
 
 
 class System(DelayFraction):
@@ -68,10 +63,7 @@ class System(DelayFraction):
         fraction = read(H)
         self.numerator, self.denominator = fraction.numerator, fraction.denominator
         if not self.is_proper:
-            delay, part = max(
-                ((delay, part) for side in (self.denominator, self.numerator) for delay, part in side.items()),
-                key=lambda item: len(item[1]),
-            )
+            delay, part = max((*self.denominator.items(), *self.numerator.items()), key=lambda item: len(item[1]))
             late = f" with the dead time {delay}" if delay else ""
             raise ValueError(
                 f"{self.expr} is improper: it has s**{len(part) - 1}{late} over s**{self.order}; expected no more "
@@ -95,10 +87,11 @@ class System(DelayFraction):
         """
         if not self.numerator:
             return sympy.S.Zero
-        (zeros, above), (poles, below) = map(lowest_term, (self.numerator, self.denominator))
-        if zeros != poles:
-            return sympy.S.Zero if zeros > poles else sympy.oo * sympy.sign(above / below)
-        return sympy.Rational(above.numerator * below.denominator, above.denominator * below.numerator)
+        zeros, poles, factor = self.at_origin
+        if zeros > poles:
+            return sympy.S.Zero
+        factor = sympy.Rational(factor.numerator, factor.denominator)
+        return factor if zeros == poles else sympy.oo * factor
 
     @property
     def is_stable(self) -> bool:
@@ -258,8 +251,7 @@ class System(DelayFraction):
         times = times_from_zero(times)
         if hasattr(u, "__len__") and not isinstance(u, str):
             return response_to_samples(self.state_space(), times, u, hold)
-        forced = DelayFraction.coprime(self.numerator, self.denominator) * read(transform(function_of(t, u)))
-        return System(forced).impulse(times)
+        return System(self.fraction * read(transform(function_of(t, u)))).impulse(times)
 
     def step_info(self, settling: float = 0.02, rise: tuple[float, float] = (0.1, 0.9)) -> StepInfo:
         """Return rise time, settling time, overshoot, undershoot and peak of the unit step response, as `StepInfo`.
@@ -357,28 +349,7 @@ class System(DelayFraction):
 
     @functools.cached_property
     def _state_space(self) -> ChannelModel:
-        from scipy.linalg import matrix_balance
-
-        back = {delay: part for delay, part in self.denominator.items() if delay}
-        ahead = {delay: part for delay, part in self.numerator.items() if delay}
-        parts = [self.numerator.get(Fraction(0), ()), *back.values(), *ahead.values()]
-        is_high = self.order >= HIGH_ORDER
-        A, C, D = (schwarz_form if is_high else companion_form)(self.denominator[Fraction(0)], parts)
-        if len(A):
-            with np.errstate(invalid="ignore"):  # SciPy makes integers of scales
-                closed = A.copy()
-                if is_high:
-                    closed[-1] += abs(C[1 : 1 + len(back)]).sum(axis=0)
-                _, (scale, _) = matrix_balance(closed, permute=False, separate=True)
-            A, C = A * scale / scale[:, None], C * scale
-        # into the states and what is direct goes u - what comes back
-        enters = np.r_[1.0, -np.ones(len(back)), np.zeros(len(ahead))]
-        B, D = np.zeros((len(A), len(parts))), np.outer(D, enters)
-        B[-1:] = enters / (scale[-1] if len(A) else 1)
-        D[0, 1 + len(back) :] = 1.0
-        return ChannelModel(
-            A, B[:, :1], B[:, 1:], C[:1], C[1:], D[:1, :1], D[:1, 1:], D[1:, :1], D[1:, 1:], [*back, *ahead]
-        )
+        return state_space(self)
 
     def to_control(
         self, order: int | None = None, omega: ArrayLike | None = None
@@ -447,13 +418,13 @@ def closed_loop(G: object, H: object = 1) -> System:
     >>> closed_loop(2 * sympy.exp(-s) / s, sympy.Rational(1, 2))
     System(2*exp(-s)/(s + exp(-s)))
     """
-    G, H = (DelayFraction.coprime(x.numerator, x.denominator) for x in map(read, (G, H)))
+    G, H = read(G).fraction, read(H).fraction
     return System(G / return_difference(G * H))
 
 
 def return_difference(L: DelayFraction) -> DelayFraction:
     """1 + L, if a loop with the open loop L has a solution."""
-    above, zero = plus(L.denominator, L.numerator), Fraction(0)
-    if len(above.get(zero, ())) < len(L.denominator[zero]):
+    above = plus(L.denominator, L.numerator)
+    if len(above.get(ZERO, ())) < L.order + 1:
         raise ValueError(f"the algebraic loop around {L.expr} has no solution: its gain at infinite frequency is -1")
     return DelayFraction.coprime(above, L.denominator)  # a common factor would be one of L

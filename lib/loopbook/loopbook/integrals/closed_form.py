@@ -129,14 +129,15 @@ def _rounded_off(a, b, product):
     return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
 
 
-def _settings(K, T, delay, Kp, Ti):
-    return f"K = {K:g}, T = {T:g}, delay = {delay:g}, Kp = {Kp:g}, Ti = {Ti:g}"
-
-
 def _wrong(*given):
-    expected = "finite numbers, T and Ti positive, delay not negative"
-    return ValueError(f"the settings are {_settings(*given)}: expected {expected}")
+    return ValueError(
+        f"the settings are {_words(given)}: expected finite numbers, T and Ti positive, delay not negative"
+    )
 
 
 def _unstable(*given):
-    return UnstableLoopError(f"the loop is not stable for {_settings(*given)}: its error has no integral")
+    return UnstableLoopError(f"the loop is not stable for {_words(given)}: its error has no integral")
+
+
+def _words(given):
+    return ", ".join(f"{name} = {value:g}" for name, value in zip(SETTINGS, given, strict=True))

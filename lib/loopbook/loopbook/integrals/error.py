@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loopbook.deadtime.system import return_difference
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, plus, taylor_coefficient, times
+from loopbook.quasipolynomials.fraction import ZERO, Quasipolynomial, earlier, plus, times
 from loopbook.stability import StabilityLimitError, unstable_roots
 from loopbook.transfer import transfer_function
 from plainmath.expressions import s
 from plainmath.validation import one_of
+
+if TYPE_CHECKING:
+    from fractions import Fraction
 
 __all__ = [
     "MODES", "ErrorFraction", "NotApplicableError", "UnstableLoopError", "blocks_of", "error_after_step", "error_of",
@@ -22,7 +25,6 @@ __all__ = [
 
 MODES = ("servo", "regulator")
 
-ZERO = Fraction(0)
 STEP: Quasipolynomial = {ZERO: (0, 1)}  # what a transfer function is divided by for a step
 
 
@@ -49,7 +51,7 @@ def error_of(process: object, controller: object, mode: str, from_setpoint: obje
 def blocks_of(*given: object) -> list[DelayFraction]:
     """Process, controller and what is between setpoint and control signal, as fractions without common factors."""
     try:
-        return [DelayFraction.coprime(x.numerator, x.denominator) for x in map(read, given)]
+        return [read(x).fraction for x in given]
     except ValueError:
         blocks = [transfer_function(x) for x in given]
         if symbols := sorted(map(str, set().union(*(x.free_symbols for x in blocks)) - {s})):
@@ -93,18 +95,15 @@ class ErrorFraction:
         fraction = read(E)
         if not fraction.numerator:
             return None
-        order = fraction.order
-        if not fraction.is_proper or any(len(part) > order for part in fraction.numerator.values()):
+        if not fraction.is_proper or max(map(len, fraction.numerator.values())) > fraction.order:
             raise ValueError(f"{fraction.expr} is not strictly proper: e(t) contains an impulse")
-        N, D = fraction.numerator, fraction.denominator
-        first = min(N)
-        if first:  # later by a dead time, the integral is the same
-            N = {delay - first: part for delay, part in N.items()}
+        first = min(fraction.numerator)
+        N, D = earlier(fraction.numerator, first), fraction.denominator
         pole = min(next(k for k, c in enumerate(part) if c) for part in D.values())
-        if pole:
-            D = {delay: part[pole:] for delay, part in D.items()}
+        D = {delay: part[pole:] for delay, part in D.items()}
         # zeros of D at the origin that only its dead times make, as those of a moving average do
-        removable = max(0, min(lowest_term(D)[0], lowest_term(N)[0] - pole))
+        zeros, poles, _ = fraction.at_origin
+        removable = max(0, min(zeros, poles) - pole)
         found = cls(fraction, N, D, pole, first, removable)
         try:
             unstable = unstable_roots(D, removable)
@@ -114,9 +113,8 @@ class ErrorFraction:
             ) from None
         if unstable:
             raise UnstableLoopError(f"{fraction.expr} is not stable: {unstable} poles in the right half-plane")
-        for k in range(pole):
-            if taylor_coefficient(N, k):
-                raise ValueError(f"the error does not vanish: E(s) = {fraction.expr} has a pole at zero")
+        if zeros < pole:
+            raise ValueError(f"the error does not vanish: E(s) = {fraction.expr} has a pole at zero")
         return found
 
     @property

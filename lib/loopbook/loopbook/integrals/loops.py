@@ -1,13 +1,24 @@
-"""The integral of the squared error of any stable loop, by the first method that applies."""
+"""The integral of the squared error of any stable loop, by the first method that applies, and of many loops at once."""
 
 from __future__ import annotations
 
-from loopbook.integrals.error import ErrorFraction, NotApplicableError, error_of
-from loopbook.integrals.residues import by_residues
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loopbook.integrals.error import ErrorFraction, NotApplicableError, UnstableLoopError, error_of
+from loopbook.integrals.residues import by_residues, sums_of_residues
 from loopbook.integrals.responses import by_response
+from loopbook.quasipolynomials.symbols import fraction_of
+from loopbook.stability.counting import ON_LIMIT, count_roots
+from loopbook.stability.enclosures import UndecidedError
 from plainmath.validation import one_of
 
-__all__ = ["integral_of_square", "ise"]
+if TYPE_CHECKING:
+    from loopbook.quasipolynomials.arrays import Quasipolynomials
+
+__all__ = ["integral_of_square", "ise", "ise_family"]
 
 METHODS = {"residues": by_residues, "response": by_response}
 
@@ -69,12 +80,10 @@ def integral_of_square(E: object, method: str | None = None) -> float:
     >>> round(integral_of_square(E), 8)
     2.5688072
     """
-    if method is not None:
-        one_of("method", method, METHODS)
+    names = METHODS if method is None else [one_of("method", method, METHODS)]
     fraction = ErrorFraction.of(E)
     if fraction is None:
         return 0.0
-    names = METHODS if method is None else [method]
     reasons = []
     for name in names:
         try:
@@ -82,3 +91,33 @@ def integral_of_square(E: object, method: str | None = None) -> float:
         except NotApplicableError as reason:
             reasons.append(f"{name}: {reason}")
     raise ValueError(f"the integral cannot be found by {'; '.join(reasons)}")
+
+
+def ise_family(above: Quasipolynomials, below: Quasipolynomials) -> np.ndarray:
+    """Return the integrals of e(t)^2 for many errors ``E = above/below`` of one form, as for settings of a controller.
+
+    With one dead time or none at a point, residues are computed for all points at once, each with the bound of the
+    digits that it loses. Points that fail it, or have several dead times, are left to `integral_of_square`.
+
+    Returns:
+        An array with a value for each point; ``math.inf`` where E has poles in the right half-plane or on the axis, nan
+        where that is not decided.
+    Raises:
+        ValueError: as `integral_of_square`.
+    """
+    count = max(above.count, below.count)
+    parts = [
+        np.broadcast_to(x, (*x.shape[:-1], count)) for sums in (above, below) for x in (sums.coefficients, sums.delays)
+    ]
+    counts = np.broadcast_to(count_roots(below), count)
+    # a pole at zero may be cancelled, and without its highest power a denominator has another order
+    left = (counts == ON_LIMIT) | (parts[2][0, -1] == 0)
+    values = np.where(left, math.nan, np.where(counts > 0, math.inf, sums_of_residues(*parts)))
+    for point in np.flatnonzero(np.isnan(values)):
+        try:
+            values[point] = integral_of_square(fraction_of(above, below, point))
+        except UnstableLoopError:
+            values[point] = math.inf
+        except UndecidedError:
+            values[point] = math.nan
+    return values

@@ -74,7 +74,6 @@ class Modes:
             return 0.0, 0.0
         order = np.argsort(-self.poles.real)
         modes, now, total, samples = Modes(self.poles[order], self.residues[order]), 0.0, np.zeros(2), 0
-        grid = None
         while True:
             plain, weighted = modes.bounds()
             weighted = weighted + (begin + now) * plain
@@ -86,47 +85,43 @@ class Modes:
             amplitudes = modes.weights * abs(modes.residues)
             if not modes.poles[0].imag and amplitudes[0] > amplitudes[1:].sum():  # it changes its sign no more
                 return tuple(total + abs(modes._signed(begin + now)))
-            if keep < len(modes.poles) or grid is None:
+            if keep < len(modes.poles) or not samples:
                 modes = Modes(modes.poles[:keep], modes.residues[:keep])
-                grid = _Grid.of(modes.poles)
+                times = STEP / abs(modes.poles).max() * np.arange(CHUNK + 1)
+                waves = np.exp(modes.poles[:, None] * times)  # the same for each chunk
             samples += CHUNK
             if samples > MOST_SAMPLES:
                 raise ManyModesError
-            total += modes._chunk(begin + now, grid)
-            modes, now = modes.later(grid.times[-1]), now + float(grid.times[-1])
+            total += modes._chunk(begin + now, times, waves)
+            modes, now = modes.later(times[-1]), now + float(times[-1])
+
+    def _antiderivatives(self, times: np.ndarray, begin: float) -> np.ndarray:
+        """Functions of time whose changes are integrals, without and with begin + t as a weight: array [2, time]."""
+        p, c, waves = self.poles, self.weights * self.residues, np.exp(self.poles[:, None] * times)
+        plain = ((c / p) @ waves).real
+        return np.array([plain, (begin + times) * plain - ((c / p**2) @ waves).real])
 
     def _signed(self, begin: float) -> np.ndarray:
         """The integrals from zero on, without and with begin + t as a weight."""
-        c = self.weights * self.residues
-        plain = -(c / self.poles).sum().real
-        return np.array([plain, begin * plain + (c / self.poles**2).sum().real])
+        return -self._antiderivatives(np.zeros(1), begin)[:, 0]
 
     def _alone(self, begin: float) -> np.ndarray:
         """The integrals of `sizes` for the first mode: of a pair, half periods that shrink by one factor."""
-        p, c = complex(self.poles[0]), complex(self.residues[0])
-        rate, w = -p.real, p.imag
-        if not w:
-            return np.array([abs(c) / rate, abs(c) * (begin / rate + 1 / rate**2)])
-        amplitude, angle = 2 * abs(c), math.atan2(c.imag, c.real)
-        # the first zero of cos(w t + angle)
-        first = ((math.pi / 2 - angle) % math.pi) / w
-        head = [(2 * part).real for part in _integrals(p, c, 0.0, first, begin)]
-        # half a period from there: amplitude exp(-rate t) sin(w t)
-        start, half = amplitude * math.exp(-rate * first), math.pi / w
-        J, J_t = (part.imag for part in _integrals(p, 1.0, 0.0, half, 0.0))
-        q, lost = math.exp(-rate * half), -math.expm1(-rate * half)
-        plain = J / lost
-        weighted = (begin + first) * plain + half * q * J / lost**2 + J_t / lost
-        return np.array([abs(head[0]) + start * plain, abs(head[1]) + start * weighted])
+        mode, p, c = Modes(self.poles[:1], self.residues[:1]), complex(self.poles[0]), complex(self.residues[0])
+        if not p.imag:
+            return abs(mode._signed(begin))
+        half, first = math.pi / p.imag, (math.pi / 2 - math.atan2(c.imag, c.real)) % math.pi / p.imag
+        head, one = abs(np.diff(mode._antiderivatives(np.array([0.0, first, first + half]), begin))).T
+        shrunk, lost = math.exp(p.real * half), -math.expm1(p.real * half)
+        return head + one / lost + [0.0, half * shrunk * one[0] / lost**2]
 
-    def _chunk(self, begin: float, grid: _Grid) -> np.ndarray:
-        """The integrals of `sizes` over the times of a grid, between zeros that are sought between the samples."""
+    def _chunk(self, begin: float, times: np.ndarray, waves: np.ndarray) -> np.ndarray:
+        """The integrals of `sizes` over times, between zeros that are sought between the samples."""
         p, c = self.poles, self.weights * self.residues
-        times, value, slope = grid.times, grid(c), grid(c * p)
+        value, slope = (np.stack([c, c * p]) @ waves).real
 
         def at(times, k):
-            waves = np.exp(p[:, None] * times)
-            return ((c * p**k) @ waves).real, ((c * p ** (k + 1)) @ waves).real
+            return (np.stack([c * p**k, c * p ** (k + 1)]) @ np.exp(p[:, None] * times)).real
 
         # between two samples it may dip through zero and come back
         turns = (value[:-1] * slope[:-1] < 0) & (value[1:] * slope[1:] > 0) & (value[:-1] * value[1:] > 0)
@@ -139,36 +134,7 @@ class Modes:
         zeros = _zeros(functools.partial(at, k=0), times[change], times[change + 1], value[change], value[change + 1])
         knots = np.concatenate([times[:1], zeros, times[-1:]])
         signs = np.where(np.concatenate([negative[change], negative[-1:]]), -1.0, 1.0)
-        waves = np.exp(p[:, None] * knots)
-        plain = ((c / p) @ waves).real
-        weighted = (begin + knots) * plain - ((c / p**2) @ waves).real
-        return np.array([(signs * np.diff(plain)).sum(), (signs * np.diff(weighted)).sum()])
-
-
-@dataclass(frozen=True)
-class _Grid:
-    """Times, and the real and imaginary parts of ``exp(pole*t)`` there, which are the same for each chunk."""
-
-    times: np.ndarray
-    waves: np.ndarray
-
-    @classmethod
-    def of(cls, poles: np.ndarray) -> _Grid:
-        times = STEP / abs(poles).max() * np.arange(CHUNK + 1)
-        waves = np.exp(poles[:, None] * times)
-        return cls(times, np.concatenate([waves.real, -waves.imag]))
-
-    def __call__(self, residues: np.ndarray) -> np.ndarray:
-        return np.concatenate([residues.real, residues.imag]) @ self.waves
-
-
-def _integrals(p: complex, c: complex, a: float, b: float, begin: float) -> tuple[complex, complex]:
-    """The integrals of c exp(p t), and of that with begin + t as a weight, from a to b."""
-    import cmath
-
-    one, other = c * cmath.exp(p * a), c * cmath.exp(p * b)
-    plain = (other - one) / p
-    return plain, ((begin + b) * other - (begin + a) * one) / p - plain / p
+        return np.diff(self._antiderivatives(knots, begin)) @ signs
 
 
 def _zeros(function, a, b, at_a, at_b):
@@ -203,26 +169,27 @@ def slow_modes(fraction: ErrorFraction, rate: float, most: int = MOST_MODES) -> 
 
 def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex] | None:
     """A pole, from one that is nearly that, and its residue, each with all digits of floating point."""
-    import mpmath
+    from flint import acb, acb_series, ctx, fmpq
 
-    def value(parts, p, k):
-        total = mpmath.mpf(0)
+    def around(parts, p):
+        """The value and the slope of a quasipolynomial."""
+        x, total = acb_series([p, 1], prec=2), acb_series([0], prec=2)
         for delay, part in parts.items():
-            late = mpmath.mpf(delay.numerator) / delay.denominator
-            polynomial, slope = mpmath.polyval(part[::-1], p, derivative=True)
-            total += (slope - late * polynomial if k else polynomial) * mpmath.exp(-late * p)
-        return total
+            late = x * -fmpq(delay.numerator, delay.denominator)
+            total += functools.reduce(lambda value, c: value * x + c, reversed(part)) * late.exp()
+        return total[0], total[1]
 
-    with mpmath.workdps(DIGITS):
-        p = mpmath.mpf(pole.real) if not pole.imag else mpmath.mpc(pole)
+    with ctx.workdps(DIGITS):
+        start = p = acb(pole)
         for _ in range(20):
-            step = value(fraction.D, p, 0) / value(fraction.D, p, 1)
-            p -= step
-            if abs(step) <= mpmath.mpf(10) ** (5 - DIGITS) * abs(p):
+            value, slope = around(fraction.D, p)
+            step = (value / slope).mid()
+            p = (p - step).mid()
+            if abs(step) <= abs(p) * 10 ** (5 - DIGITS):
                 break
         else:
             return None
-        if abs(p - mpmath.mpmathify(pole)) > 1e-5 * abs(p) or not p.real < 0:
+        if not abs(p - start) <= 1e-5 * abs(p) or not p.real < 0:
             return None
-        residue = value(fraction.N, p, 0) / value(fraction.D, p, 1) / p**fraction.pole
+        residue = around(fraction.N, p)[0] / around(fraction.D, p)[1] / p**fraction.pole
         return complex(p), complex(residue)

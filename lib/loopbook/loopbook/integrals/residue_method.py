@@ -97,9 +97,7 @@ class ResidueMethod:
 
     def _plain_share(self, x):
         """The residues of E G at a zero and its negative, where symbols leave open where they lie."""
-        z = sympy.exp(-self.delay * s)
-        above = (self.B + self.D * z) * sympy.expand(self.A * _mirrored(self.B) - self.C * _mirrored(self.D))
-        residue = above / ((self.A + self.C * z) * self.Delta.diff(s))
+        residue = self.integrand * self.Delta / self.Delta.diff(s)
         return residue.subs(s, sympy.sqrt(x)) + residue.subs(s, -sympy.sqrt(x))
 
     def _share(self, p, sign):
@@ -193,14 +191,13 @@ def residue_method(E: sympy.Expr) -> ResidueMethod:
     -cos(delay*k)/(2*(k*sin(delay*k) - k))
     """
     above, below = normal_form(E)
-    common = next((d for d in above if all((other - d).is_nonnegative for other in above)), 0)
-    later = {d for d in (*above, *below) if d != 0}
+    later = {*above, *below} - {0}
     if len(later) > 1:
+        common = next((d for d in above if all((other - d).is_nonnegative for other in above)), 0)
         above = {sympy.expand(d - common): part for d, part in above.items()}
-        later = {d for d in (*above, *below) if d != 0}
+        later = {*above, *below} - {0}
     if len(later) > 1:
         raise ValueError(f"{E} has the dead times {', '.join(sorted(map(str, later)))}: expected one")
     delay = next(iter(later), sympy.S.Zero)
-    parts = {"A": (below, 0), "B": (above, 0)} | ({"C": (below, delay), "D": (above, delay)} if delay != 0 else {})
-    expressions = {name: source[d].as_expr() if d in source else sympy.S.Zero for name, (source, d) in parts.items()}
-    return ResidueMethod(**({"C": sympy.S.Zero, "D": sympy.S.Zero} | expressions), delay=delay)
+    now, late = ([side[d].as_expr() if d in side else sympy.S.Zero for side in (below, above)] for d in (0, delay))
+    return ResidueMethod(*now, *(late if delay else [sympy.S.Zero] * 2), delay)

@@ -5,7 +5,10 @@ Each integral comes with a bound of the digits that it loses where zeros lie clo
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from loopbook.integrals.error import ErrorFraction, NotApplicableError
 from loopbook.integrals.residue_method import both_residues
@@ -14,6 +17,8 @@ __all__ = ["by_residues", "sums_of_residues"]
 
 ROUNDING = 2.3e-16
 MOST_DIGITS_LOST = 1e-11  # the relative error that a sum of residues may have
+
+_value = functools.partial(polyval, tensor=False)  # of polynomials, one for each point, the lowest power first
 
 
 def by_residues(fraction: ErrorFraction) -> float:
@@ -44,7 +49,7 @@ def sums_of_residues(
     delay = every.max(axis=0)
     fits = ((every == 0) | (every == delay)).all(axis=0)
     (A, C), (B, D) = (
-        [(part * which[:, None]).sum(axis=0) for which in (~late, late)]
+        [(part * chosen[:, None]).sum(axis=0) for chosen in (~late, late)]
         for part, late in ((below, used[1]), (above, used[0]))
     )
     order = len(A) - 1
@@ -64,26 +69,18 @@ def sums_of_residues(
         fits &= (np.isfinite(x) & (radius <= 1e-3 * abs(x))).all(axis=0)
         x = np.where(fits, x, 1.0)
         p = np.sqrt(x)
-        at_A, at_B, at_C, at_D = (_value(part, p) for part in (A, B, C, D))
+        at_A, at_B, at_C, at_D = (_value(p, part) for part in (A, B, C, D))
         z = np.exp(-delay * p)
         close = at_A + at_C * z
         # dDelta/ds = 2 s dDelta/d(s^2)
-        shares = both_residues(at_A, at_B, at_C, at_D, _value(B, -p), _value(D, -p), z) / (close * 2 * p * slope)
+        shares = both_residues(at_A, at_B, at_C, at_D, _value(-p, B), _value(-p, D), z) / (close * 2 * p * slope)
         total = -shares.real.sum(axis=0)
         # what polynomials lose where their terms cancel is seen from the sizes of the terms
-        terms = _value(abs(A), abs(p)) + _value(abs(C), abs(p)) * abs(z)
+        terms = _value(abs(p), abs(A)) + _value(abs(p), abs(C)) * abs(z)
         near = terms * (1 + abs(p) * delay) / abs(close)
         sensitivity = radius / abs(x) / (4 * order**2 * ROUNDING)
         lost = 4e-16 * (abs(shares) * ((1 + sensitivity) ** 2 + near * (1 + sensitivity))).sum(axis=0)
         return np.where(fits & np.isfinite(total) & (lost <= MOST_DIGITS_LOST * total), total, np.nan)
-
-
-def _value(part, x):
-    """The values of polynomials, one for each point, the lowest power first."""
-    total = 0.0
-    for row in part[::-1]:
-        total = total * x + row
-    return total
 
 
 def _zeros(coefficients, sizes):
@@ -103,10 +100,10 @@ def _zeros(coefficients, sizes):
     companion[:, np.arange(1, n), np.arange(n - 1)] = 1
     companion[:, :, -1] = -scaled[:-1].T
     x = np.linalg.eigvals(companion).T.astype(complex)
-    step = _value(scaled, x) / _value(scaled[1:] * powers[1:], x)
+    step = _value(x, scaled) / _value(x, scaled[1:] * powers[1:])
     x = np.where(abs(step) < 1e-6 * abs(x), x - step, x)
     apart = x[:, None] - x[None]
     apart[np.arange(n), np.arange(n)] = 1
     slope = apart.prod(axis=1)
-    left = abs(_value(scaled, x)) + 4 * n * ROUNDING * _value(sizes, abs(x))
+    left = abs(_value(x, scaled)) + 4 * n * ROUNDING * _value(abs(x), sizes)
     return x * unit, n * left / abs(slope) * unit, slope * coefficients[-1] * unit ** (n - 1)

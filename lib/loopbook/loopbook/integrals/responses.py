@@ -86,9 +86,7 @@ def _four_integrals(response: Response, sizes: bool) -> np.ndarray:
     """The integrals over each segment of e^2, abs(e), t abs(e) and t e^2, those of abs(e) only where wanted."""
     times, weights = response.quadrature()
     squares = response(times) ** 2 * weights
-    plain = weighted = np.zeros(len(squares))
-    if sizes:
-        plain, weighted = _of_sizes(response)
+    plain, weighted = _of_sizes(response) if sizes else np.zeros((2, len(squares)))
     return np.stack([squares.sum(axis=1), plain, weighted, (times * squares).sum(axis=1)], axis=1)
 
 
@@ -149,18 +147,16 @@ def _beyond(
     if modes is None:
         return None, "the modes that last longer are many, or were not found"
     modes = modes.later(-float(fraction.earliest))
-    late = response.edges[:-1] >= 0.9 * response.edges[-1]
-    late[-1] = True
+    late = np.append(response.edges[:-2] >= 0.9 * end, True)
     times = response.quadrature()[0][late]
     apart = float(abs(response(times) - modes(times)).max())
     rest_modes = modes.later(end)
-    square, square_later = rest_modes.squares() if len(modes.poles) else (0.0, 0.0)
+    square, square_later = rest_modes.squares()
     found = np.array([square, 0.0, 0.0, end * square + square_later])
     if sizes:
-        scale = total + found
-        lead = max(rest_modes.bounds()[0].tolist(), default=0.0)
-        lead_later = end * lead + max(rest_modes.bounds()[1].tolist(), default=0.0)
-        allowed = tolerance / 20 * (scale[1] + lead / 2), tolerance / 20 * (scale[2] + lead_later / 2)
+        lead, lead_later = (bounds.max(initial=0.0) for bounds in rest_modes.bounds())
+        lead_later += end * lead
+        allowed = tolerance / 20 * (total[1] + lead / 2), tolerance / 20 * (total[2] + lead_later / 2)
         try:
             found[1:3] = rest_modes.sizes(end, allowed)
         except ManyModesError:
@@ -169,10 +165,6 @@ def _beyond(
     size = float((rest_modes.weights * abs(rest_modes.residues)).sum())
     plain, weighted = apart / rate, apart * (end / rate + 1 / rate**2)
     error = np.array([(2 * size + apart) * plain, plain, weighted, (2 * size + apart) * weighted])
-    if not sizes:
-        error, found_total = error[[0]], (total + found)[[0]]
-    else:
-        found_total = total + found
-    if not (error <= tolerance / 2 * found_total).all():
+    if not (error <= tolerance / 2 * (total + found))[: 4 if sizes else 1].all():
         return None, f"what the modes leave of it, {apart:.0e}, has not decayed"
     return found, ""

@@ -6,6 +6,6 @@ infinitely many roots.
 """
 
 from loopbook.quasipolynomials.fraction import DelayFraction, read
-from loopbook.quasipolynomials.normal_form import normal_form
+from loopbook.quasipolynomials.symbols import normal_form
 
 __all__ = ["DelayFraction", "normal_form", "read"]

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 __all__ = ["DEGREE", "Quasipolynomials"]
 
 DEGREE = 4  # of the expansions in the frequency
-FEW = 20_000  # values, up to which they are computed in one piece
 
 
 class Quasipolynomials:
@@ -118,11 +117,11 @@ class Quasipolynomials:
 
     # ---- on the imaginary axis
 
-    def value(self, which: np.ndarray, w: np.ndarray) -> np.ndarray:
+    def value(self, points: np.ndarray, w: np.ndarray) -> np.ndarray:
         """The values of some quasipolynomials at s = j w, one frequency for each."""
-        return self.taylor(which, w, 0)[0]
+        return self.taylor(points, w, 0)[0]
 
-    def taylor(self, which: np.ndarray, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
+    def taylor(self, points: np.ndarray, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
         """The coefficients of the powers of h in the quasipolynomials at s = j (w + h): array [power, frequency]."""
         if self.count == 1:
             powers, total = powers_of(w, self.order + 1), 0
@@ -130,34 +129,25 @@ class Quasipolynomials:
                 value = matrix[: degree + 1] @ powers
                 total = total + (value * np.exp(-1j * (w * delay)) if delay else value)
             return total
-        if len(w) * (degree + 1) * (self.order + 1) <= FEW:
-            powers = 1j ** np.arange(self.order + 1)[:, None] * powers_of(w, self.order + 1)
-            total = 0
-            for matrix, delay in zip(self._expansion, self.delays, strict=True):
-                value = (matrix[: degree + 1, :, which] * powers).sum(axis=1)
-                total = total + (value * np.exp(-1j * (w * delay[which])) if delay.any() else value)
-            return total * 1j ** np.arange(degree + 1)[:, None]
-        total, square = np.zeros((degree + 1, len(w)), dtype=complex), -w * w
+        # in powers of w alone, which is quicker: the even powers are real, the odd ones imaginary
+        powers = powers_of(w, self.order + 1) * np.resize([1.0, 1.0, -1.0, -1.0], self.order + 1)[:, None]
+        total = np.zeros((degree + 1, len(w)), dtype=complex)
         for matrix, delay in zip(self._expansion, self.delays, strict=True):
-            value = np.empty((degree + 1, len(w)), dtype=complex)
-            for k in range(degree + 1):
-                # in powers of w alone, which is quicker: the even powers are real, the odd ones imaginary
-                even, odd = (_polynomial(matrix[k, first::2], which, square) for first in (0, 1))
-                value[k] = (even + 1j * (w * odd)) * 1j**k
-            total += value * np.exp(-1j * (w * delay[which])) if delay.any() else value
-        return total
+            chosen = matrix[: degree + 1].take(points, axis=2)
+            even, odd = (np.einsum("kij,ij->kj", chosen[:, first::2], powers[first::2]) for first in (0, 1))
+            value = even + 1j * odd
+            total += value * np.exp(-1j * (w * delay[points])) if delay.any() else value
+        return total * 1j ** np.arange(degree + 1)[:, None]
 
-    def sizes(self, which: np.ndarray, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
+    def sizes(self, points: np.ndarray, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
         """Bounds of the coefficients of the powers 0 to degree + 1 in `taylor`, from zero to the frequency w.
 
         They are those of the sum of the sizes of all terms, and the last one bounds the remainder.
         """
-        sizes = self._sizes[: degree + 2]
+        sizes, powers = self._sizes[: degree + 2], powers_of(w, self.order + 1)
         if self.count == 1:
-            return sizes[..., 0] @ powers_of(w, self.order + 1)
-        if len(w) * (degree + 2) * (self.order + 1) <= FEW:
-            return (sizes[..., which] * powers_of(w, self.order + 1)).sum(axis=1)
-        return np.stack([_polynomial(each, which, w) + 0 * w for each in sizes])
+            return sizes[..., 0] @ powers
+        return np.einsum("kij,ij->kj", sizes.take(points, axis=2), powers)
 
     @functools.cached_property
     def _expansion(self):
@@ -179,17 +169,8 @@ class Quasipolynomials:
         derivatives = [coefficients]
         for i in range(1, min(degree, self.order) + 1):
             derivatives.append(_derivative(derivatives[-1]) / i)
-        if not rates.any():
-            nothing = 0 * coefficients
-            return [*derivatives, *[nothing] * (degree + 1 - len(derivatives))]
         late = [(rates**k / math.factorial(k))[:, None] for k in range(degree + 1)]
-        expanded = []
-        for k in range(degree + 1):
-            total = derivatives[0] * late[k]
-            for i in range(1, min(k, len(derivatives) - 1) + 1):
-                total = total + derivatives[i] * late[k - i]
-            expanded.append(total)
-        return expanded
+        return [sum(part * late[k - i] for i, part in enumerate(derivatives[: k + 1])) for k in range(degree + 1)]
 
 
 def _derivative(coefficients):
@@ -201,14 +182,3 @@ def _derivative(coefficients):
 def powers_of(w: np.ndarray, count: int) -> np.ndarray:
     """The powers 0, 1 ... of numbers: array [power, number]."""
     return w ** np.arange(count)[:, None] if count > 1 else (0 * w + 1)[None]
-
-
-def _polynomial(rows, which, x):
-    """The values of polynomials, lowest power first; rows of zeros cost nothing."""
-    total = None
-    for row in rows[::-1]:
-        if total is not None:
-            total = total * x
-        if row.any():
-            total = row[which] if total is None else total + row[which]
-    return 0.0 if total is None else total

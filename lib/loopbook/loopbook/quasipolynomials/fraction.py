@@ -10,24 +10,23 @@ from __future__ import annotations
 import functools
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Self, TypeVar
 
 import numpy as np
 import sympy
-from sympy.polys.densearith import dup_exquo
-from sympy.polys.euclidtools import dup_gcd
-from sympy.polys.galoistools import gf_gcd
-from sympy.polys.rings import PolyRing
+from flint import fmpz_mpoly_ctx, fmpz_poly
 
 from loopbook.transfer import transfer_function
 from plainmath.expressions import s
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
     from numpy.typing import ArrayLike
 
 __all__ = [
-    "DelayFraction", "Quasipolynomial", "common_polynomial", "expression", "lowest_term", "plus", "read",
-    "taylor_coefficient", "times",
+    "ZERO", "DelayFraction", "Quasipolynomial", "common_polynomial", "earlier", "expression", "lowest_term", "plus",
+    "read", "taylor_coefficient", "times",
 ]  # fmt: skip
 
 #: A sum of polynomials in `s`, each with a dead time: {delay: whole coefficients, the lowest power first}.
@@ -35,8 +34,11 @@ Quasipolynomial = dict[Fraction, tuple[int, ...]]
 
 ZERO: Fraction = Fraction(0)
 ONE: Quasipolynomial = {ZERO: (1,)}
-PRIME = 2**61 - 1  # by which polynomials without a common factor are told apart quickly
 MOST_MULTIPLES = 60  # of a common base, up to which delays are powers of one symbol
+INFINITE = "is infinite: expected a transfer function"
+NOT_RATIONAL = "is not a rational function of s and dead times exp(-delay*s)"
+
+T = TypeVar("T")
 
 
 # ------------------------------------------------------------------------------------------------ quasipolynomials
@@ -46,31 +48,32 @@ def plus(one: Quasipolynomial, other: Quasipolynomial, factor: int = 1) -> Quasi
     """Return ``one + factor*other``."""
     total = dict(one)
     for delay, part in other.items():
-        mine = total.get(delay, ())
-        longer = [*mine, *[0] * (len(part) - len(mine))]
-        for k, c in enumerate(part):
-            longer[k] += factor * c
-        while longer and not longer[-1]:
-            longer.pop()
-        if longer:
-            total[delay] = tuple(longer)
-        else:
-            total.pop(delay, None)
-    return total
+        total[delay] = _coefficients(_polynomial(total.get(delay, ())) + factor * _polynomial(part))
+    return {delay: part for delay, part in total.items() if part}
 
 
 def times(one: Quasipolynomial, other: Quasipolynomial) -> Quasipolynomial:
     """Return ``one*other``."""
+    if ONE in (one, other):
+        return other if one == ONE else one
     total: Quasipolynomial = {}
     for delay, p in one.items():
         for later, q in other.items():
-            product = [0] * (len(p) + len(q) - 1)
-            for i, a in enumerate(p):
-                if a:
-                    for j, b in enumerate(q):
-                        product[i + j] += a * b
-            total = plus(total, {delay + later: tuple(product)})
+            total = plus(total, {delay + later: _coefficients(_polynomial(p) * _polynomial(q))})
     return total
+
+
+def earlier(parts: Quasipolynomial, by: Fraction) -> Quasipolynomial:
+    """Return a quasipolynomial with all dead times shorter."""
+    return {delay - by: part for delay, part in parts.items()} if by else parts
+
+
+def _polynomial(part: Iterable[int]) -> fmpz_poly:
+    return fmpz_poly([*part])
+
+
+def _coefficients(polynomial: fmpz_poly) -> tuple[int, ...]:
+    return tuple(map(int, polynomial.coeffs()))
 
 
 def taylor_coefficient(parts: Quasipolynomial, k: int) -> Fraction:
@@ -98,10 +101,6 @@ def lowest_term(parts: Quasipolynomial) -> tuple[int, Fraction]:
     return k, coefficient
 
 
-def _scaled(parts: Quasipolynomial, factor: int) -> Quasipolynomial:
-    return {delay: tuple(factor * c for c in part) for delay, part in parts.items()} if factor else {}
-
-
 # ------------------------------------------------------------------------------------------------ common factors
 
 
@@ -109,33 +108,29 @@ def _cancelled(above: Quasipolynomial, below: Quasipolynomial) -> tuple[Quasipol
     """Both without common factors, the denominator with a part without dead time and a positive leading coefficient."""
     if not above:
         return {}, ONE
-    base = min(below)
-    if base:
-        above, below = ({delay - base: part for delay, part in parts.items()} for parts in (above, below))
-    if len(below[ZERO]) > 1 or len(below) > 1:
-        above, below = _without_common_polynomial(above, below)
-        # only where both have several dead times can a common factor have one
-        if len(above) > 1 and len(below) > 1:
-            above, below = _without_common_quasipolynomial(above, below)
-    content = math.gcd(*(c for parts in (above, below) for part in parts.values() for c in part))
+    base, common = min(below), _common(above, below)
+    above, below = (_divided(earlier(parts, base), common) for parts in (above, below))
+    # only where both have several dead times can a common factor have one
+    if len(above) > 1 and len(below) > 1:
+        above, below = _without_common_quasipolynomial(above, below)
+    return _ordered(above, below)
+
+
+def _ordered(above: Quasipolynomial, below: Quasipolynomial) -> tuple[Quasipolynomial, Quasipolynomial]:
     if below[ZERO][-1] < 0:
-        content = -content
-    if content != 1:
-        above, below = (
-            {delay: tuple(c // content for c in part) for delay, part in parts.items()} for parts in (above, below)
-        )
+        above, below = plus({}, above, -1), plus({}, below, -1)
     return dict(sorted(above.items())), dict(sorted(below.items()))
 
 
-def _without_common_polynomial(
-    above: Quasipolynomial, below: Quasipolynomial
-) -> tuple[Quasipolynomial, Quasipolynomial]:
-    """Without the factor that all polynomials of both quasipolynomials share."""
-    parts = [[*reversed(part)] for part in (*above.values(), *below.values())]
-    if min(map(len, parts)) == 1 or _surely_coprime(parts):
-        return above, below
-    common = _gcd(parts)
-    return (above, below) if len(common) == 1 else (_divided(above, common), _divided(below, common))
+def _common(*sums: Quasipolynomial) -> fmpz_poly:
+    """The polynomial that all parts of quasipolynomials have in common."""
+    return functools.reduce(fmpz_poly.gcd, (_polynomial(part) for parts in sums for part in parts.values()))
+
+
+def _divided(parts: Quasipolynomial, common: fmpz_poly) -> Quasipolynomial:
+    if common.is_one():
+        return parts
+    return {delay: _coefficients(_polynomial(part) // common) for delay, part in parts.items()}
 
 
 def common_polynomial(parts: Quasipolynomial) -> tuple[tuple[int, ...], Quasipolynomial]:
@@ -144,35 +139,8 @@ def common_polynomial(parts: Quasipolynomial) -> tuple[tuple[int, ...], Quasipol
     >>> common_polynomial({Fraction(0): (0, 2, 2), Fraction(1): (1, 1)})    # 2 s (s + 1) + (s + 1) exp(-s)
     ((1, 1), {Fraction(0, 1): (0, 2), Fraction(1, 1): (1,)})
     """
-    common = _gcd([[*reversed(part)] for part in parts.values()])
-    return tuple(map(int, reversed(common))), _divided(parts, common)
-
-
-def _gcd(parts):
-    return functools.reduce(lambda f, g: dup_gcd(f, g, sympy.ZZ), [list(map(sympy.ZZ, part)) for part in parts])
-
-
-def _divided(parts: Quasipolynomial, common: list) -> Quasipolynomial:
-    return {
-        delay: tuple(int(c) for c in reversed(dup_exquo(list(map(sympy.ZZ, reversed(part))), common, sympy.ZZ)))
-        for delay, part in parts.items()
-    }
-
-
-def _surely_coprime(parts: list[list[int]]) -> bool:
-    """Whether polynomials, highest power first, have no common factor, as seen modulo a prime."""
-    if any(part[0] % PRIME == 0 for part in parts):
-        return False
-    # a common factor of all is one of the first and of any combination of the others
-    length = max(map(len, parts[1:]))
-    mixed = [0] * length
-    for number, part in enumerate(parts[1:], 1):
-        for k, c in enumerate(part, length - len(part)):
-            mixed[k] += (7919 * number * number + 1) * c
-    first, mixed = ([sympy.ZZ(c % PRIME) for c in row] for row in (parts[0], mixed))
-    while mixed and not mixed[0]:
-        mixed.pop(0)
-    return bool(mixed) and len(gf_gcd(first, mixed, sympy.ZZ(PRIME), sympy.ZZ)) == 1
+    common = _common(parts)
+    return _coefficients(common), _divided(parts, common)
 
 
 def _without_common_quasipolynomial(
@@ -180,24 +148,23 @@ def _without_common_quasipolynomial(
 ) -> tuple[Quasipolynomial, Quasipolynomial]:
     """Without common factors that contain dead times, these being powers of a few symbols."""
     powers, units = _as_powers({*above, *below})
-    ring = PolyRing(sympy.symbols(f"s z:{len(units)}"), sympy.ZZ)
+    ring = fmpz_mpoly_ctx.get(("s", *(f"z{k}" for k in range(len(units)))))
     f, g = (
-        ring.from_dict({(k, *powers[d]): sympy.ZZ(c) for d, part in side.items() for k, c in enumerate(part) if c})
+        ring.from_dict({(k, *powers[d]): c for d, part in side.items() for k, c in enumerate(part) if c})
         for side in (above, below)
     )
-    common, f, g = f.cofactors(g)
-    if common.is_ground:
+    common = f.gcd(g)
+    if common.is_constant():
         return above, below
     sides = []
-    for polynomial in (f, g):
+    for polynomial in (f // common, g // common):
         side: Quasipolynomial = {}
-        for (k, *exponents), c in polynomial.terms():
-            delay = sum((n * unit for n, unit in zip(exponents, units, strict=True)), ZERO)
+        for (k, *exponents), c in polynomial.to_dict().items():
+            delay = sum((int(n) * unit for n, unit in zip(exponents, units, strict=True)), ZERO)
             side = plus(side, {delay: (*[0] * k, int(c))})
         sides.append(side)
     base = min(sides[1])
-    above, below = ({delay - base: part for delay, part in side.items()} for side in sides)
-    return above, below
+    return earlier(sides[0], base), earlier(sides[1], base)
 
 
 def _as_powers(delays: set[Fraction]) -> tuple[dict[Fraction, tuple[int, ...]], list[Fraction]]:
@@ -236,6 +203,16 @@ def _unit(delays: list[Fraction]) -> Fraction:
 
 
 # ------------------------------------------------------------------------------------------------ the fraction
+
+
+def _operator(method: Callable[[T, DelayFraction], T]) -> Callable[[T, object], T]:
+    """An operator whose other side is what `read` understands, but for what Python may ask about it instead."""
+
+    @functools.wraps(method)
+    def operator(self: T, other: object) -> T:
+        return NotImplemented if isinstance(other, (str, list, tuple, dict)) else method(self, read(other))
+
+    return operator
 
 
 class DelayFraction:
@@ -277,12 +254,13 @@ class DelayFraction:
     def coprime(cls, above: Quasipolynomial, below: Quasipolynomial) -> DelayFraction:
         """The fraction of two quasipolynomials that are known to be coprime, the denominator with a part at zero."""
         fraction = DelayFraction.__new__(DelayFraction)
-        below = below if above else ONE
-        sign = -1 if below[ZERO][-1] < 0 else 1
-        fraction.numerator, fraction.denominator = (
-            dict(sorted(_scaled(parts, sign).items())) for parts in (above, below)
-        )
+        fraction.numerator, fraction.denominator = _ordered(above, below if above else ONE)
         return fraction
+
+    @property
+    def fraction(self) -> DelayFraction:
+        """The same as a `DelayFraction`, which may become improper."""
+        return DelayFraction.coprime(self.numerator, self.denominator)
 
     @functools.cached_property
     def expr(self) -> sympy.Expr:
@@ -305,40 +283,34 @@ class DelayFraction:
 
     # ---- algebra
 
-    def __add__(self, other: object) -> Self:
-        other = _operand(other)
-        if other is None:
-            return NotImplemented
+    @_operator
+    def __add__(self, other: DelayFraction) -> Self:
         if self.denominator == other.denominator:
             return self._make(plus(self.numerator, other.numerator), self.denominator)
         above = plus(times(self.numerator, other.denominator), times(other.numerator, self.denominator))
         return self._make(above, times(self.denominator, other.denominator))
 
     def __neg__(self) -> Self:
-        return self._make(_scaled(self.numerator, -1), self.denominator)
+        return self._make(plus({}, self.numerator, -1), self.denominator)
 
-    def __sub__(self, other: object) -> Self:
-        other = _operand(other)
-        return NotImplemented if other is None else self + -other
+    @_operator
+    def __sub__(self, other: DelayFraction) -> Self:
+        return self + -other
 
     def __rsub__(self, other: object) -> Self:
         return -self + other
 
-    def __mul__(self, other: object) -> Self:
-        other = _operand(other)
-        if other is None:
-            return NotImplemented
+    @_operator
+    def __mul__(self, other: DelayFraction) -> Self:
         return self._make(times(self.numerator, other.numerator), times(self.denominator, other.denominator))
 
-    def __truediv__(self, other: object) -> Self:
-        other = _operand(other)
-        if other is None:
-            return NotImplemented
+    @_operator
+    def __truediv__(self, other: DelayFraction) -> Self:
         return self._over(self, other)
 
-    def __rtruediv__(self, other: object) -> Self:
-        other = _operand(other)
-        return NotImplemented if other is None else self._over(other, self)
+    @_operator
+    def __rtruediv__(self, other: DelayFraction) -> Self:
+        return self._over(other, self)
 
     def _over(self, one: DelayFraction, other: DelayFraction) -> Self:
         if not other.numerator:
@@ -350,10 +322,7 @@ class DelayFraction:
             return NotImplemented
         n = n.__index__()
         base = self._over(read(1), self) if n < 0 else self
-        above, below = ONE, ONE
-        for _ in range(abs(n)):
-            above, below = times(above, base.numerator), times(below, base.denominator)
-        return self._make(above, below)
+        return self._make(_power(base.numerator, abs(n)), _power(base.denominator, abs(n)))
 
     __radd__, __rmul__ = __add__, __mul__
 
@@ -377,6 +346,19 @@ class DelayFraction:
         [Fraction(1, 1), Fraction(2, 1)]
         """
         return sorted({*self.numerator, *self.denominator} - {ZERO})
+
+    @functools.cached_property
+    def at_origin(self) -> tuple[int, int, Fraction]:
+        """The zeros and the poles at s = 0, and a factor: about zero it is ``factor*s**(zeros - poles)``.
+
+        Zeros of the numerator and of the denominator that only their dead times make count here, too, and where both
+        have some, these are removable.
+
+        >>> read((1 - sympy.exp(-2 * s)) / s).at_origin
+        (1, 1, Fraction(2, 1))
+        """
+        (zeros, above), (poles, below) = map(lowest_term, (self.numerator, self.denominator))
+        return zeros, poles, above / below
 
     # ---- values
 
@@ -433,32 +415,19 @@ def read(value: object) -> DelayFraction:
         raise ValueError(f"give a number for {', '.join(letters)} in {H}")
     try:
         above, below = _read(H)
-    except _InfiniteError:
-        raise ValueError(f"{H} is infinite: expected a transfer function") from None
-    except _NoFractionError:
-        raise ValueError(f"{H} is not a rational function of s and dead times exp(-delay*s)") from None
+    except NoFractionError as reason:
+        raise ValueError(f"{H} {reason}") from None
     return DelayFraction(above, below)
 
 
-def _operand(value: object) -> DelayFraction | None:
-    """The other side of an operator; None for what Python may ask about it instead."""
-    return None if isinstance(value, (str, list, tuple, dict)) else read(value)
-
-
-class _InfiniteError(Exception):
-    """A part of an expression is divided by zero."""
-
-
-class _NoFractionError(Exception):
-    """An expression is no fraction of sums of polynomials with dead times."""
+class NoFractionError(Exception):
+    """What of an expression keeps it from being a fraction of sums of polynomials with dead times."""
 
 
 def _read(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
     """Numerator and denominator of an expression, common factors left in."""
     if e == s:
         return {ZERO: (0, 1)}, ONE
-    if e.is_Rational:
-        return {ZERO: (int(e.p),)} if e.p else {}, {ZERO: (int(e.q),)}
     if e.is_Mul:
         above, below = ONE, ONE
         for factor in e.args:
@@ -475,36 +444,40 @@ def _read(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
                 above, below = plus(times(above, q), times(p, below)), times(below, q)
         return above, below
     if isinstance(e, sympy.exp) and e.has(s):
-        return _read_dead_time(e)
+        number, delay = dead_time_of(e)
+        above, below = _read(number)
+        return times(above, {rational(delay): (1,)}), below
     if e.is_Pow and e.exp.is_Integer:
         p, q = _read(e.base)
         if e.exp < 0:
             if not p:
-                raise _InfiniteError
+                raise NoFractionError(INFINITE)
             p, q = q, p
-        above, below = ONE, ONE
-        for _ in range(abs(int(e.exp))):
-            above, below = times(above, p), times(below, q)
-        return above, below
+        return _power(p, abs(int(e.exp))), _power(q, abs(int(e.exp)))
     if e in (sympy.oo, -sympy.oo, sympy.zoo):
-        raise _InfiniteError
+        raise NoFractionError(INFINITE)
     if e.is_number:
-        number = _rational(e)
+        number = rational(e)
         return {ZERO: (number.numerator,)} if number else {}, {ZERO: (number.denominator,)}
-    raise _NoFractionError
+    raise NoFractionError(NOT_RATIONAL)
 
 
-def _read_dead_time(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
-    """``exp(a - delay*s)``, as a shift of `s` makes it, with the number exp(a) as a factor."""
-    constant, rest = sympy.expand(e.exp).as_independent(s, as_Add=True)
+def _power(parts: Quasipolynomial, n: int) -> Quasipolynomial:
+    if len(parts) == 1:
+        return {n * delay: _coefficients(_polynomial(part) ** n) for delay, part in parts.items()}
+    return functools.reduce(times, [parts] * n, ONE)
+
+
+def dead_time_of(e: sympy.exp) -> tuple[sympy.Expr, sympy.Expr]:
+    """The number exp(a) and the dead time of ``exp(a - delay*s)``, as a shift of `s` makes it."""
+    number, rest = sympy.expand(e.exp).as_independent(s, as_Add=True)
     delay = sympy.expand(-rest / s)
-    if delay.has(s) or not constant.is_number:
-        raise _NoFractionError
-    above, below = _read(sympy.exp(constant)) if constant else (ONE, ONE)
-    return times(above, {_rational(delay): (1,)}), below
+    if delay.has(s) or not number.is_number:
+        raise NoFractionError(NOT_RATIONAL)
+    return sympy.exp(number), delay
 
 
-def _rational(number: sympy.Expr) -> Fraction:
+def rational(number: sympy.Expr) -> Fraction:
     """A number itself if it is a fraction, and otherwise with each irrational part of it to 30 digits.
 
     So the sum of two dead times is, however it is written, the sum of what they are taken for.
@@ -512,10 +485,9 @@ def _rational(number: sympy.Expr) -> Fraction:
     if number.is_Rational:
         return Fraction(int(number.p), int(number.q))
     if number.is_Add:
-        return sum(map(_rational, number.args), ZERO)
+        return sum(map(rational, number.args), ZERO)
     if number.is_Mul:
-        return math.prod(map(_rational, number.args), start=Fraction(1))
+        return math.prod(map(rational, number.args), start=Fraction(1))
     if not number.is_real:
         raise ValueError(f"{number} is complex: expected real coefficients")
-    digits = sympy.Rational(str(number.evalf(30)))
-    return Fraction(int(digits.p), int(digits.q))
+    return Fraction(str(number.evalf(30)))

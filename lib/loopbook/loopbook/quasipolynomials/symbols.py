@@ -1,8 +1,9 @@
-"""Transfer functions with symbols, for many values of these at once."""
+"""Transfer functions with symbols: their normal form, and their values for many values of the symbols at once."""
 
 from __future__ import annotations
 
 import functools
+import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -10,8 +11,18 @@ import numpy as np
 import sympy
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.quasipolynomials.fraction import DelayFraction, Quasipolynomial, plus
-from loopbook.quasipolynomials.normal_form import normal_form
+from loopbook.quasipolynomials.fraction import (
+    INFINITE,
+    MOST_MULTIPLES,
+    NOT_RATIONAL,
+    DelayFraction,
+    NoFractionError,
+    Quasipolynomial,
+    dead_time_of,
+    earlier,
+    plus,
+    rational,
+)
 from loopbook.transfer import transfer_function
 from plainmath.expressions import s
 from plainmath.validation import real_numbers
@@ -21,7 +32,103 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-__all__ = ["broadcast_values", "fraction_of", "with_values"]
+__all__ = ["broadcast_values", "fraction_of", "normal_form", "with_values"]
+
+
+# ------------------------------------------------------------------------------------------------ the normal form
+
+
+def normal_form(H: object) -> tuple[dict[sympy.Expr, sympy.Poly], dict[sympy.Expr, sympy.Poly]]:
+    """Return numerator and denominator of a transfer function, each a sum of polynomials with dead times.
+
+    Common factors are cancelled, also those that contain dead times, if these are multiples of one, up to 60 times it.
+
+    Arguments:
+        H: expression in `s`, rational in `s` and in dead times ``exp(-delay*s)``, which may stand anywhere. Other
+            symbols are allowed, in delays too. Or a `System`.
+    Returns:
+        Two dictionaries ``{delay: polynomial}``, the polynomials as SymPy ``Poly`` in `s`. The denominator has a part
+        without dead time.
+    Raises:
+        ValueError: if H is no such fraction, or its output depends on the input of a later time.
+
+    >>> numerator, denominator = normal_form(1 / (s + 2 * sympy.exp(-s)))
+    >>> {delay: part.as_expr() for delay, part in denominator.items()}
+    {0: s, 1: 2}
+    """
+    H = transfer_function(H)
+    letters = sorted(H.free_symbols - {s}, key=str)
+    try:
+        if H.has(sympy.oo, sympy.zoo):
+            raise NoFractionError(INFINITE)
+        powers, delays = _dead_times(H)
+        rational_function = H.xreplace(powers).replace(_is_irrational, _rational)
+        if not rational_function.is_rational_function(s, *delays, *letters):
+            raise NoFractionError(NOT_RATIONAL)
+        fraction = sympy.QQ.frac_field(s, *delays, *letters).from_sympy(rational_function)
+    except ZeroDivisionError:
+        raise ValueError(f"{H} {INFINITE}") from None
+    except NoFractionError as reason:
+        raise ValueError(f"{H} {reason}") from None
+    above, below = (_collected(part, list(delays.values()), letters) for part in (fraction.numer, fraction.denom))
+    base = next((d for d in below if all((other - d).is_nonnegative for other in below)), None)
+    if base is None:
+        raise ValueError(f"the dead times {', '.join(map(str, below))} cannot be ordered: give numbers for symbols")
+    above, below = earlier(above, base), earlier(below, base)
+    for delay in above:
+        if not delay.is_nonnegative:
+            raise ValueError(f"{H} contains exp({-delay * s}): a dead time cannot be negative")
+    return above, below
+
+
+def _dead_times(H):
+    """Symbols for the dead times in H: {exponential: number times power of a symbol} and {symbol: dead time}.
+
+    Dead times that are multiples of a common one are powers of one symbol, so that common factors are seen.
+    """
+    families = {}
+    for exponential in sorted((e for e in H.atoms(sympy.exp) if e.has(s)), key=str):
+        number, delay = dead_time_of(exponential)
+        delay = _rational(delay) if delay.is_number else delay
+        base = next((base for base in families if sympy.cancel(delay / base).is_Rational), delay)
+        families.setdefault(base, []).append((exponential, _rational(number), sympy.cancel(delay / base)))
+    powers, delays = {}, {}
+    for base, family in families.items():
+        ratios = [ratio for *_, ratio in family]
+        unit = sympy.Rational(math.gcd(*(r.p for r in ratios)), math.lcm(*(r.q for r in ratios)))
+        together = max(map(abs, ratios)) <= MOST_MULTIPLES * unit
+        for group in [family] if together else [[member] for member in family]:
+            step = unit if together else group[0][-1]
+            sign = -1 if (step * base).could_extract_minus_sign() else 1
+            symbol = sympy.Dummy()
+            delays[symbol] = sign * step * base
+            powers |= {exponential: number * symbol ** (sign * ratio / step) for exponential, number, ratio in group}
+    return powers, delays
+
+
+def _is_irrational(e):
+    return e.is_number and not e.is_Rational
+
+
+def _rational(number):
+    number = rational(number)
+    return sympy.Rational(number.numerator, number.denominator)
+
+
+def _collected(part, delays, letters):
+    """A polynomial in s, symbols for dead times and other symbols, as {delay: polynomial in s}."""
+    collected = {}
+    for (power, *powers), c in part.terms():
+        delay = sympy.expand(sympy.Add(*(n * d for n, d in zip(powers, delays, strict=False))))
+        others = sympy.Mul(*(x**n for x, n in zip(letters, powers[len(delays) :], strict=True)))
+        terms = collected.setdefault(delay, {})
+        terms[power,] = terms.get((power,), 0) + sympy.Rational(c.numerator, c.denominator) * others
+    ordered = sorted(collected.items(), key=lambda item: sympy.default_sort_key(item[0]))
+    polynomials = [(delay, sympy.Poly.from_dict(terms, s)) for delay, terms in ordered]
+    return {delay: polynomial for delay, polynomial in polynomials if not polynomial.is_zero}
+
+
+# ------------------------------------------------------------------------------------------------ in numbers
 
 
 def broadcast_values(values: Mapping[str, ArrayLike]) -> tuple[dict[str, np.ndarray], tuple[int, ...]]:
@@ -56,8 +163,14 @@ def with_values(H: object, values: Mapping[str, np.ndarray]) -> tuple[Quasipolyn
     H = transfer_function(H)
     if missing := sorted({str(symbol) for symbol in H.free_symbols - {s}} - set(values)):
         raise ValueError(f"give values for {', '.join(missing)} in {H}")
-    count = len(next(iter(values.values()))) if values else 1
-    above, below = (_numbers(side, values, count) for side in _compiled(H, tuple(values)))
+    count, sides = len(next(iter(values.values()))) if values else 1, []
+    for function, parts, powers in _compiled(H, tuple(values)):
+        table = np.array([row + np.zeros(count) for row in function(*values.values())])
+        coefficients, delays = table[: parts * powers].reshape(parts, powers, count), table[parts * powers :]
+        if (delays < 0).any():
+            raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")
+        sides.append(Quasipolynomials(coefficients, delays))
+    above, below = sides
     return above, below
 
 
@@ -71,18 +184,9 @@ def _compiled(H, names):
         side = side or {sympy.S.Zero: sympy.Poly(0, s)}
         order = max(max(part.degree() for part in side.values()), 0)
         rows = [part.coeff_monomial(s**n) for part in side.values() for n in range(order + 1)]
-        numbers = sympy.lambdify([positive[name] for name in names], [*rows, *side], "numpy")
+        numbers = sympy.lambdify([*positive.values()], [*rows, *side], "numpy")
         found.append((numbers, len(side), order + 1))
     return found
-
-
-def _numbers(compiled, values, count):
-    function, parts, powers = compiled
-    table = np.array([row + np.zeros(count) for row in function(*values.values())])
-    coefficients, delays = table[: parts * powers].reshape(parts, powers, count), table[parts * powers :]
-    if (delays < 0).any():
-        raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")
-    return Quasipolynomials(coefficients, delays)
 
 
 def fraction_of(above: Quasipolynomials, below: Quasipolynomials, point: int) -> DelayFraction:
@@ -93,14 +197,12 @@ def fraction_of(above: Quasipolynomials, below: Quasipolynomials, point: int) ->
     >>> fraction_of(*with_values(K * sympy.exp(-s / 10) / (2 * s + 1), {"K": np.array([1.0, 3.0])}), 1)
     DelayFraction(3*exp(-s/10)/(2*s + 1))
     """
-    rows, delays = (
-        [getattr(sums, name)[..., point % sums.count].tolist() for sums in (above, below)]
-        for name in ("coefficients", "delays")
-    )
+    sides: list[Quasipolynomial] = []
     # numbers in floating point are whole ones over a power of two
+    rows = [sums.coefficients[..., point % sums.count].tolist() for sums in (above, below)]
     scale = max(c.as_integer_ratio()[1] for side in rows for row in side for c in row)
-    sides: list[Quasipolynomial] = [{}, {}]
-    for n in (0, 1):
-        for row, delay in zip(rows[n], delays[n], strict=True):
-            sides[n] = plus(sides[n], {Fraction(repr(delay)): tuple(int(Fraction(c) * scale) for c in row)})
+    for side, sums in zip(rows, (above, below), strict=True):
+        parts = zip(side, sums.delays[:, point % sums.count].tolist(), strict=True)
+        whole = [{Fraction(repr(delay)): tuple(int(Fraction(c) * scale) for c in row)} for row, delay in parts]
+        sides.append(functools.reduce(plus, whole, {}))
     return DelayFraction(*sides)

@@ -1,4 +1,4 @@
-"""Where the signals of a model with delay channels are not smooth, and up to which frequencies that can be seen.
+"""The breaking points of a model with delay channels: where its signals are not smooth, and up to which frequencies.
 
 A step at the input comes back from each channel one delay later, smoother after each integration on its way, and so on.
 What comes back at a moment is known by its transform on a grid of frequencies. A polynomial of degree 19 over a segment
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from loopbook.deadtime.channels import ChannelModel
+    from loopbook.deadtime.state_space import ChannelModel
 
 BLIND = 40.0  # frequency times length above which a polynomial of degree 19 does not see a signal
 UNSEEN = 1e-14  # the share of a signal that is nothing
@@ -27,10 +27,10 @@ LONGEST = 12.0  # the same for the fastest motion that may grow unseen
 ROUNDED = Fraction(1, 2**48)  # by how much, as a share of them, two moments that are meant to be one may differ
 ROUNDS = 50.0  # delays that a segment may be long, so that two of its nodes look back before its beginning
 KEPT = 0.5  # of what goes round in channels alone: less is gone before such a segment ends
-MOST_ECHOES = 30_000
+MOST_POINTS = 30_000
 
 
-class Echoes:
+class BreakingPoints:
     """The moments at which something comes back from the channels, in the order of time, as far as they are asked for.
 
     Arguments:
@@ -57,7 +57,8 @@ class Echoes:
         from_input, channels = _transfer(model, grid)
         q = len(delays)
         # what goes round in the channels becomes smaller each time where the spectral radius of the sizes is below 1
-        loud = np.flatnonzero(_radius(abs(channels[:q])) >= 1)
+        radii = abs(np.linalg.eigvals(abs(np.moveaxis(channels[:q], -1, 0)))).max(axis=1, initial=0.0)
+        loud = np.flatnonzero(radii >= 1)
         if len(loud) and loud[-1] == len(grid) - 1:  # what comes back is never smooth
             longest = REACH / fastest if fastest else math.inf
         else:
@@ -78,29 +79,26 @@ class Echoes:
         self.count = 1
         self._heap: list[int] = []
         self._pending: dict[int, np.ndarray] = {}
-        self._heard(0, from_input[:, seen:], 0.0)
+        self._arrive(0, from_input[:, seen:], 0.0)
 
-    def _heard(self, tick: int, content: np.ndarray, threshold: np.ndarray | float) -> bool:
-        """Whether something is heard that is new at this moment; then also what comes back from it."""
+    def _arrive(self, tick: int, content: np.ndarray, threshold: np.ndarray | float) -> bool:
+        """Whether something new comes back at this moment; then also what comes back from that."""
         signals, places = (abs(content) > threshold).nonzero()
         if not len(places):
             return False
         top = int(places.max())
         self.moments.append((tick, int(self._lengths[top]), max(1, int(self._starts[top]))))
-        for channel in set(signals.tolist()):
-            if channel == len(self.delays):
-                continue
+        for channel in set(signals.tolist()) - {len(self.delays)}:
             later = tick + self.delays[channel]
             if later <= self.last:
-                entry = self._pending.get(later)
-                if entry is None:
-                    self._pending[later] = entry = self._empty.copy()
+                if later not in self._pending:
+                    self._pending[later] = self._empty.copy()
                     heapq.heappush(self._heap, later)
                     self.count += 1
-                entry[channel] += content[channel]
+                self._pending[later][channel] += content[channel]
         return True
 
-    def listen(self, ahead: int, length: int, threshold: np.ndarray) -> bool:
+    def find(self, ahead: int, length: int, threshold: np.ndarray) -> bool:
         """Find moments up to the tick `ahead`, or up to the first that a segment of the length cannot cross.
 
         Returns whether there are new ones.
@@ -113,9 +111,9 @@ class Echoes:
             near = now + (now >> 48)
             while heap and heap[0] <= near:  # one but for rounding, as sums of irrational dead times
                 content += pending.pop(heapq.heappop(heap))
-            if self.count > MOST_ECHOES:
+            if self.count > MOST_POINTS:
                 raise OverflowError
-            new = self._heard(now, (self.from_channels * content).sum(axis=1), threshold)
+            new = self._arrive(now, (self.from_channels * content).sum(axis=1), threshold)
             if new and self.moments[-1][1] < length:
                 break
         return len(self.moments) > before
@@ -123,8 +121,6 @@ class Echoes:
 
 def _speeds(model):
     """How fast the signals can change, in 1/time: without the channels, and with each closed either way."""
-    if not len(model.A):
-        return [], 0.0
     # independent of the unit of time
     changes = model.B2.T[:, :, None] * model.C2[:, None, :]
     values = np.linalg.eigvals(model.A + np.concatenate([0 * model.A[None], changes, -changes]))
@@ -151,21 +147,8 @@ def _memory(model):
 def _transfer(model, grid):
     """From the input and from the channels to the channels and the output, on the grid of frequencies."""
     A, B1, B2, C1, C2, D11, D12, D21, D22, _ = model
-    direct_input, direct = np.vstack([D21, D11]), np.vstack([D22, D12])
-    if not len(A):
-        ones = np.ones(len(grid))
-        return direct_input * ones + 0j, direct[..., None] * ones + 0j
-    moments = (SLANT + 1j) * grid
-    states = np.linalg.solve(moments[:, None, None] * np.eye(len(A)) - A, np.hstack([B1, B2])[None] + 0j)
-    values = np.vstack([C2, C1]) @ states + np.hstack([direct_input, direct])
+    points = (SLANT + 1j) * grid
+    states = np.linalg.solve(points[:, None, None] * np.eye(len(A)) - A, np.hstack([B1, B2])[None] + 0j)
+    values = np.vstack([C2, C1]) @ states + np.block([[D21, D22], [D11, D12]])
     values = np.moveaxis(values, 0, -1)
     return np.ascontiguousarray(values[:, 0]), values[:, 1:]
-
-
-def _radius(matrices):
-    """The spectral radii of matrices without negative elements, along the last axis."""
-    if len(matrices) == 0:
-        return np.zeros(matrices.shape[-1])
-    if len(matrices) == 1:
-        return matrices[0, 0]
-    return abs(np.linalg.eigvals(np.moveaxis(matrices, -1, 0))).max(axis=1)
