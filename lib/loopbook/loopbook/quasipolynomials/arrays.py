@@ -125,11 +125,7 @@ class Quasipolynomials:
     def taylor(self, which: np.ndarray, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
         """The coefficients of the powers of h in the quasipolynomials at s = j (w + h): array [power, frequency]."""
         if self.count == 1:
-            powers, total = powers_of(w, self.order + 1), 0
-            for matrix, delay in zip(self.turned, self.delays[:, 0].tolist(), strict=True):
-                value = matrix[: degree + 1] @ powers
-                total = total + (value * np.exp(-1j * (w * delay)) if delay else value)
-            return total
+            return expanded(self.turned, self.delays[:, 0], w, degree).sum(axis=0)
         if len(w) * (degree + 1) * (self.order + 1) <= FEW:
             powers = 1j ** np.arange(self.order + 1)[:, None] * powers_of(w, self.order + 1)
             total = 0
@@ -162,34 +158,56 @@ class Quasipolynomials:
     @functools.cached_property
     def _expansion(self):
         """Array [part, k, power, point]: polynomials that, times ``exp(-delay*s)``, are the derivatives over k!."""
-        return np.array(self._expanded(self.coefficients, -self.delays, DEGREE)).swapaxes(0, 1)
+        return _derivatives(self.coefficients, -self.delays, DEGREE)
 
     @functools.cached_property
     def turned(self) -> np.ndarray:
         """What a single quasipolynomial is expanded with: arrays [part, k, power], in powers of the frequency."""
-        turns = 1j ** (np.arange(DEGREE + 1)[:, None] + np.arange(self.order + 1))
-        return self._expansion[..., 0] * turns
+        return self._expansion[..., 0] * _turns(self.order)
 
     @functools.cached_property
     def _sizes(self):
-        expanded = self._expanded(abs(self.coefficients), abs(self.delays), DEGREE + 1)
-        return np.array([each.sum(axis=0) for each in expanded])
+        return _derivatives(abs(self.coefficients), abs(self.delays), DEGREE + 1).sum(axis=0)
 
-    def _expanded(self, coefficients, rates, degree):
-        derivatives = [coefficients]
-        for i in range(1, min(degree, self.order) + 1):
-            derivatives.append(_derivative(derivatives[-1]) / i)
-        if not rates.any():
-            nothing = 0 * coefficients
-            return [*derivatives, *[nothing] * (degree + 1 - len(derivatives))]
-        late = [(rates**k / math.factorial(k))[:, None] for k in range(degree + 1)]
-        expanded = []
-        for k in range(degree + 1):
-            total = derivatives[0] * late[k]
-            for i in range(1, min(k, len(derivatives) - 1) + 1):
-                total = total + derivatives[i] * late[k - i]
-            expanded.append(total)
-        return expanded
+
+def expanded(matrices: np.ndarray, delays: np.ndarray, w: np.ndarray, degree: int) -> np.ndarray:
+    """The parts of the expansions of single quasipolynomials at frequencies: array [part, power, frequency]."""
+    parts = matrices[:, : degree + 1] @ powers_of(w, matrices.shape[2])
+    if delays.any():
+        parts *= np.exp(-1j * np.multiply.outer(delays, w))[:, None]
+    return parts
+
+
+def _derivatives(coefficients, rates, degree):
+    """Array [part, k, power, point]: ``(d/ds + rate)**k / k!`` of polynomials [part, power, point]."""
+    parts, powers, count = coefficients.shape
+    steps = min(degree + 1, powers)
+    padded = np.zeros((parts, powers + steps - 1, count), dtype=coefficients.dtype)
+    padded[:, :powers] = coefficients
+    indices, binomials = _taylor(powers, steps)
+    terms = padded[:, indices] * binomials
+    if not rates.any():
+        return terms if steps > degree else np.pad(terms, ((0, 0), (0, degree + 1 - steps), (0, 0), (0, 0)))
+    late = np.ones((parts, degree + 1, 1, count))
+    late[:, 1:, 0] = rates[:, None] / np.arange(1, degree + 1)[:, None]
+    late = late.cumprod(axis=1)
+    total = terms[:, :1] * late
+    for i in range(1, steps):
+        total[:, i:] += terms[:, i, None] * late[:, : degree + 1 - i]
+    return total
+
+
+@functools.cache
+def _taylor(powers, steps):
+    """Which coefficient, and how many times, is that of a power in a derivative over k!: arrays [k, power]."""
+    indices = np.arange(steps)[:, None] + np.arange(powers)
+    binomials = [[float(math.comb(n, k)) for n in row] for k, row in enumerate(indices.tolist())]
+    return indices, np.array(binomials)[..., None]
+
+
+@functools.cache
+def _turns(order):
+    return 1j ** (np.arange(DEGREE + 1)[:, None] + np.arange(order + 1))
 
 
 def _derivative(coefficients):
