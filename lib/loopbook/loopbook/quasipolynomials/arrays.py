@@ -181,26 +181,25 @@ def expanded(matrices: np.ndarray, delays: np.ndarray, w: np.ndarray, degree: in
 def _derivatives(coefficients, rates, degree):
     """Array [part, k, power, point]: ``(d/ds + rate)**k / k!`` of polynomials [part, power, point]."""
     parts, powers, count = coefficients.shape
-    steps = min(degree + 1, powers)
-    padded = np.zeros((parts, powers + steps - 1, count), dtype=coefficients.dtype)
+    padded = np.zeros((parts, powers + degree, count), dtype=coefficients.dtype)
     padded[:, :powers] = coefficients
-    indices, binomials = _taylor(powers, steps)
+    indices, binomials = _taylor(powers, degree)
     terms = padded[:, indices] * binomials
     if not rates.any():
-        return terms if steps > degree else np.pad(terms, ((0, 0), (0, degree + 1 - steps), (0, 0), (0, 0)))
+        return terms
     late = np.ones((parts, degree + 1, 1, count))
     late[:, 1:, 0] = rates[:, None] / np.arange(1, degree + 1)[:, None]
     late = late.cumprod(axis=1)
     total = terms[:, :1] * late
-    for i in range(1, steps):
+    for i in range(1, min(degree + 1, powers)):
         total[:, i:] += terms[:, i, None] * late[:, : degree + 1 - i]
     return total
 
 
 @functools.cache
-def _taylor(powers, steps):
+def _taylor(powers, degree):
     """Which coefficient, and how many times, is that of a power in a derivative over k!: arrays [k, power]."""
-    indices = np.arange(steps)[:, None] + np.arange(powers)
+    indices = np.arange(degree + 1)[:, None] + np.arange(powers)
     binomials = [[float(math.comb(n, k)) for n in row] for k, row in enumerate(indices.tolist())]
     return indices, np.array(binomials)[..., None]
 

@@ -50,10 +50,8 @@ def plus(one: Quasipolynomial, other: Quasipolynomial, factor: int = 1) -> Quasi
         longer = [*mine, *[0] * (len(part) - len(mine))]
         for k, c in enumerate(part):
             longer[k] += factor * c
-        while longer and not longer[-1]:
-            longer.pop()
-        if longer:
-            total[delay] = tuple(longer)
+        if row := _trimmed(longer):
+            total[delay] = row
         else:
             total.pop(delay, None)
     return total
@@ -61,16 +59,23 @@ def plus(one: Quasipolynomial, other: Quasipolynomial, factor: int = 1) -> Quasi
 
 def times(one: Quasipolynomial, other: Quasipolynomial) -> Quasipolynomial:
     """Return ``one*other``."""
-    total: Quasipolynomial = {}
+    products: dict[Fraction, list[int]] = {}
     for delay, p in one.items():
         for later, q in other.items():
-            product = [0] * (len(p) + len(q) - 1)
+            total = products.setdefault(delay + later if delay and later else delay or later, [])
+            total += [0] * (len(p) + len(q) - 1 - len(total))
             for i, a in enumerate(p):
                 if a:
-                    for j, b in enumerate(q):
-                        product[i + j] += a * b
-            total = plus(total, {delay + later: tuple(product)})
-    return total
+                    for j, b in enumerate(q, i):
+                        total[j] += a * b
+    return {delay: part for delay, total in products.items() if (part := _trimmed(total))}
+
+
+def _trimmed(coefficients: list[int]) -> tuple[int, ...]:
+    """Without zeros for the highest powers."""
+    while coefficients and not coefficients[-1]:
+        coefficients.pop()
+    return tuple(coefficients)
 
 
 def taylor_coefficient(parts: Quasipolynomial, k: int) -> Fraction:

@@ -40,7 +40,7 @@ class HighFrequencies:
         self.loops = loops
         A, B = loops.exact[:2]
         delays = sorted({Fraction(0), *A.parts, *B.parts})
-        rows = [[exact.coefficients(delay)[-1] for exact in (A, B)] for delay in delays]
+        rows = [[_highest(exact, delay) for exact in (A, B)] for delay in delays]
         self._rows = [row for row in rows if row is rows[0] or any(row)]
         self._a, self._b = np.array(self._rows, dtype=float).T
         self.vanishes, self.is_open = not self._a.any(), len(self._rows) > 2
@@ -179,6 +179,11 @@ class HighFrequencies:
             return end
         A, B = self._parts
         return _better(end, _sum_positive_beyond((Fraction(most) ** 2, A + B), (-1, B)))
+
+
+def _highest(exact, delay):
+    part = exact.parts.get(delay, ())
+    return Fraction(part[-1], exact.divisor) if len(part) > exact.order else Fraction(0)
 
 
 def _extremes(part) -> list[float]:

@@ -247,7 +247,18 @@ class Loops:
             return None
         if self.exact is None:
             return [square(x.coefficients[0]) for x in (self.A, self.B)]
-        return [square(each.coefficients(min(each.parts))[:, None]).astype(float) for each in self.exact[:2]]
+        return [self._exact_square(each) for each in self.exact[:2]]
+
+    def _exact_square(self, exact: Exact) -> np.ndarray:
+        """The same of a sum with one dead time at most, rounded at the end only."""
+        (part,) = exact.parts.values()
+        whole = square(np.array(part, dtype=object)[:, None])[:, 0].tolist()
+        row = np.zeros((self.B.order + 1, 1))
+        powers = np.arange(len(part))
+        row[: len(part), 0] = [
+            float(c * Fraction(exact.unit) ** (2 * (n - exact.order)) / exact.divisor**2) for n, c in zip(powers.tolist(), whole, strict=True)
+        ]
+        return row
 
     def beyond_limit(self) -> np.ndarray:
         """A frequency beyond which abs(L) is not above what it is at infinite frequency, with one dead time; or nan.

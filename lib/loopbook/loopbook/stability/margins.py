@@ -19,12 +19,13 @@ from loopbook.stability.counting import (
     open_loop,
 )
 from loopbook.stability.crossings import Real, SizeOne, asked, below, phase_left, steps
-from loopbook.stability.enclosures import MOST_INTERVALS
+from loopbook.stability.enclosures import MOST_INTERVALS, divided
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import ENOUGH, Loops
 from loopbook.stability.peaks import Peak, to_the_top
 
 MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
+NEAR_PEAK = np.array([-36.0, -12.0, -4.0, -1.0, 1.0, 4.0, 12.0, 36.0]) / 16  # ends of intervals, in widths of it
 FURTHEST = 1e15  # times the frequency of the fastest pole, beyond which nothing is looked for
 
 
@@ -236,17 +237,16 @@ class Survey:
         return max([end, *(each for each in ends if each < 8 * end)])
 
     def _intervals(self, start, end):
-        """Geometric steps, and the peak in the middle of one of them."""
+        """Geometric steps, in pieces where dead times turn the phase much, and the peak in the middle of one of them."""
         which, a, b = steps(np.full(1, start), np.full(1, end))
+        edges = np.append(a, b[-1])
         if self.peak and start < self.peak.place[0] < end:
             p, width = float(self.peak.place[0]), self.peak.width
-            edges = np.append(a, b[-1])
-            near = p + width * np.array([-9.0, -3.0, -1.0, 1.0, 3.0, 9.0]) / 4
-            inner = edges[1:-1][abs(edges[1:-1] - p) > width / 4]
-            near = near[(near > start) & (near < end)]
-            edges = np.unique(np.concatenate([edges[[0, -1]], inner, near]))
-            return np.zeros(len(edges) - 1, dtype=int), edges[:-1], edges[1:]
-        return which, a, b
+            near = p + width * NEAR_PEAK
+            inner = edges[1:-1][~(abs(edges[1:-1] - p) < width / 16)]
+            edges = np.sort(np.concatenate([edges[[0, -1]], inner, near[(near > start) & (near < end)]]))
+        a, b = edges[:-1], edges[1:]
+        return divided(np.zeros(len(a), dtype=int), a, b, np.ceil((b - a) * self.loops.longest).clip(1, 64).astype(int))
 
     # ---- what was found
 
