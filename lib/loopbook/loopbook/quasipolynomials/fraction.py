@@ -8,6 +8,7 @@ fraction, the coefficients whole numbers, the lowest power first. ``5*s + 2 + 3*
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Self
@@ -16,7 +17,6 @@ import numpy as np
 import sympy
 from sympy.polys.densearith import dup_exquo
 from sympy.polys.euclidtools import dup_gcd
-from sympy.polys.galoistools import gf_gcd
 from sympy.polys.rings import PolyRing
 
 from loopbook.transfer import transfer_function
@@ -174,10 +174,16 @@ def _surely_coprime(parts: list[list[int]]) -> bool:
     for number, part in enumerate(parts[1:], 1):
         for k, c in enumerate(part, length - len(part)):
             mixed[k] += (7919 * number * number + 1) * c
-    first, mixed = ([sympy.ZZ(c % PRIME) for c in row] for row in (parts[0], mixed))
-    while mixed and not mixed[0]:
-        mixed.pop(0)
-    return bool(mixed) and len(gf_gcd(first, mixed, sympy.ZZ(PRIME), sympy.ZZ)) == 1
+    first, mixed = ([c % PRIME for c in row] for row in (parts[0], mixed))
+    while any(mixed):  # Euclid's algorithm
+        while not mixed[0]:
+            mixed.pop(0)
+        inverse = pow(mixed[0], -1, PRIME)
+        while len(first) >= len(mixed):
+            factor = first[0] * inverse
+            first = [(a - factor * b) % PRIME for a, b in itertools.zip_longest(first, mixed, fillvalue=0)][1:]
+        first, mixed = mixed, first
+    return len(first) == 1
 
 
 def _without_common_quasipolynomial(

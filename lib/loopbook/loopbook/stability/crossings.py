@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loopbook.stability.enclosures import Enclosure, divided, divided_about, enclosed, geometric, walk
-from loopbook.stability.loops import FEW
+from loopbook.stability.loops import DOUBTFUL, FEW
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -276,7 +276,8 @@ def solved(
     w = _solved(loops, which, a, b, function, at_a < at_b, w, False)
     A, B = (x[0] for x in loops.values(which, w))
     if loops.exact is not None and 0 < len(w) < FEW:
-        again = np.flatnonzero(loops.doubtful(which, w, A, B))
+        noise = loops.noise(which, w)
+        again = np.flatnonzero((noise[0] > DOUBTFUL * abs(A)) | (noise[1] > DOUBTFUL * abs(B)))
         if len(again):
             some = which[again]
             w[again] = _solved(loops, some, a[again], b[again], function, (at_a < at_b)[again], w[again], True)

@@ -15,6 +15,8 @@ from loopbook.stability.difference import at_endless_frequency, power_of_two, pr
 from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, origin
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from loopbook.quasipolynomials import DelayFraction
 
 DOUBTFUL = 1e-12  # the share of rounding in a value above which crossings and peaks are computed with more digits
@@ -89,13 +91,12 @@ class Loops:
         delays = np.concatenate([self.A.delays[:, 0], self.B.delays[:, 0]])
         return np.concatenate([self.A.turned, self.B.turned]), delays, len(self.A.delays)
 
-    def doubtful(self, which: np.ndarray, w: np.ndarray, *values: np.ndarray) -> np.ndarray:
-        """Where rounding has a share in A or B, whose values are given, or in A + B if one value is."""
-        doubt = False
-        for sums, value in zip((self.A, self.B) if len(values) == 2 else (self.C,), values, strict=True):
-            noise = EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
-            doubt = doubt | (noise > DOUBTFUL * abs(value))
-        return doubt
+    def noise(self, which: np.ndarray, w: np.ndarray) -> list[np.ndarray]:
+        """Bounds of the rounding in the values of A and B."""
+        return [
+            EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
+            for sums in (self.A, self.B)
+        ]
 
     # ---- at zero
 
@@ -246,18 +247,16 @@ class Loops:
         if len(self.A.coefficients) != 1 or len(self.B.coefficients) != 1:
             return None
         if self.exact is None:
-            return [square(x.coefficients[0]) for x in (self.A, self.B)]
+            return [np.array(square(x.coefficients[0])) for x in (self.A, self.B)]
         return [self._exact_square(each) for each in self.exact[:2]]
 
     def _exact_square(self, exact: Exact) -> np.ndarray:
         """The same of a sum with one dead time at most, rounded at the end only."""
         (part,) = exact.parts.values()
-        whole = square(np.array(part, dtype=object)[:, None])[:, 0].tolist()
         row = np.zeros((self.B.order + 1, 1))
-        powers = np.arange(len(part))
-        row[: len(part), 0] = [
-            float(c * Fraction(exact.unit) ** (2 * (n - exact.order)) / exact.divisor**2) for n, c in zip(powers.tolist(), whole, strict=True)
-        ]
+        for n, c in enumerate(square(part)):
+            shift = 2 * (n - self.B.order) * (math.frexp(exact.unit)[1] - 1)  # the unit is a power of two
+            row[n] = (c << max(shift, 0)) / (exact.divisor**2 << max(-shift, 0))
         return row
 
     def beyond_limit(self) -> np.ndarray:
@@ -314,18 +313,13 @@ def _square(parts: Quasipolynomial) -> Quasipolynomial:
     return times(parts, _mirrored(parts))
 
 
-def square(part: np.ndarray) -> np.ndarray:
-    """The squares of the sizes of polynomials [power, point] on the imaginary axis, in powers of ``w*w``."""
+def square(part: Sequence) -> list:
+    """The square of the size of a polynomial, its coefficients numbers or arrays, on the imaginary axis, in powers of ``w*w``."""
     order = len(part) - 1
-    return np.array(
-        [
-            sum(
-                (-1) ** abs(n - i) * part[i] * part[2 * n - i]
-                for i in range(max(0, 2 * n - order), min(2 * n, order) + 1)
-            )
-            for n in range(order + 1)
-        ]
-    )
+    return [
+        sum((-1) ** abs(n - i) * part[i] * part[2 * n - i] for i in range(max(0, 2 * n - order), min(2 * n, order) + 1))
+        for n in range(order + 1)
+    ]
 
 
 def positive_beyond(rows: np.ndarray) -> np.ndarray:

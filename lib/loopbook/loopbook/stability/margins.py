@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from loopbook.quasipolynomials.fraction import common_polynomial, times
 from loopbook.stability.confirmation import confirm
 from loopbook.stability.counting import (
     cancels,
@@ -23,6 +24,7 @@ from loopbook.stability.enclosures import MOST_INTERVALS, divided
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import ENOUGH, Loops
 from loopbook.stability.peaks import Peak, to_the_top
+from loopbook.stability.polynomials import unstable_roots_of
 
 MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
 NEAR_PEAK = np.array([-36.0, -12.0, -4.0, -1.0, 1.0, 4.0, 12.0, 36.0]) / 16  # ends of intervals, in widths of it
@@ -119,7 +121,7 @@ def margins(loop: object) -> Margins:
 def _read(loop: object) -> Loops | None:
     """A loop in numbers; None for none."""
     L = open_loop(loop, zero=True)
-    if cancels(loop) and not is_stable(loop):
+    if cancels(loop) and not _cancels_stable(loop):
         raise ValueError(f"{loop} is not stable: controller and process cancel an unstable pole; it has no margin")
     if L.numerator:
         characteristic(L)  # raises for what is not a loop
@@ -127,6 +129,16 @@ def _read(loop: object) -> Loops | None:
     if not is_stable(L):
         raise ValueError(f"{L.expr} is not stable: it has no margin")
     return None
+
+
+def _cancels_stable(loop: object) -> bool:
+    """Whether the poles that controller and process cancel are in the left half-plane."""
+    P, C, L = loop.process_fraction, loop.controller_fraction, loop.open_fraction
+    above, below = times(P.numerator, C.numerator), times(P.denominator, C.denominator)
+    common, rest = common_polynomial(dict(enumerate((*below.values(), *above.values()))))
+    if list(rest.values())[: len(below)] == list(L.denominator.values()):
+        return unstable_roots_of(common) == 0
+    return is_stable(loop)  # what is cancelled has dead times
 
 
 @contextlib.contextmanager

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loopbook.stability.crossings import Question, View
-from loopbook.stability.loops import ENOUGH
+from loopbook.stability.loops import DOUBTFUL, ENOUGH
 
 if TYPE_CHECKING:
     from loopbook.stability.loops import Loops
@@ -70,7 +70,7 @@ def to_the_top(loops: Loops, question: Peak) -> None:
     with np.errstate(divide="ignore", invalid="ignore"):
         question.width = float(np.clip((-2 / bend[0]) ** 0.5, 1e-7 * places[0], places[0] / 4))
     place = question.place[every]
-    if loops.exact is not None and loops.doubtful(every, place, loops.C.value(every, place))[0]:
+    if loops.exact is not None and sum(loops.noise(every, place))[0] > DOUBTFUL * abs(at(place)[1][0, 0]):
         # rounding made what was seen, also if that is higher than what is there
         question.most[0] = 0.0
         question.see(every, *_climbed(lambda w: [each.taylor(w, 2) for each in loops.exact[1:]], place, 8)[:2])

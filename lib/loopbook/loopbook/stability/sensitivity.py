@@ -81,6 +81,6 @@ def _no_peak_beyond(loops, most):
         return end
     end = np.fmin(end, np.where(most >= _at_endless_frequency(loops), loops.beyond_limit(), math.nan))
     if not loops.longest.any():
-        C = square((loops.A.coefficients + loops.B.coefficients)[0])
+        C = np.array(square((loops.A.coefficients + loops.B.coefficients)[0]))
         end = np.fmin(end, positive_beyond(most**2 * C - loops.squares[1]))
     return end
