@@ -127,12 +127,12 @@ class Quasipolynomials:
         if self.count == 1:
             return expanded(self.turned, self.delays[:, 0], w, degree).sum(axis=0)
         if len(w) * (degree + 1) * (self.order + 1) <= FEW:
-            powers = 1j ** np.arange(self.order + 1)[:, None] * powers_of(w, self.order + 1)
+            powers = turns(self.order + 1) * powers_of(w, self.order + 1)
             total = 0
             for matrix, delay in zip(self._expansion, self.delays, strict=True):
                 value = (matrix[: degree + 1, :, which] * powers).sum(axis=1)
                 total = total + (value * np.exp(-1j * (w * delay[which])) if delay.any() else value)
-            return total * 1j ** np.arange(degree + 1)[:, None]
+            return total * turns(degree + 1)
         total, square = np.zeros((degree + 1, len(w)), dtype=complex), -w * w
         for matrix, delay in zip(self._expansion, self.delays, strict=True):
             value = np.empty((degree + 1, len(w)), dtype=complex)
@@ -163,7 +163,7 @@ class Quasipolynomials:
     @functools.cached_property
     def turned(self) -> np.ndarray:
         """What a single quasipolynomial is expanded with: arrays [part, k, power], in powers of the frequency."""
-        return self._expansion[..., 0] * _turns(self.order)
+        return self._expansion[..., 0] * (turns(DEGREE + 1) * turns(self.order + 1).T)
 
     @functools.cached_property
     def _sizes(self):
@@ -205,8 +205,9 @@ def _taylor(powers, degree):
 
 
 @functools.cache
-def _turns(order):
-    return 1j ** (np.arange(DEGREE + 1)[:, None] + np.arange(order + 1))
+def turns(count: int) -> np.ndarray:
+    """The powers 0, 1 ... of j, a column."""
+    return np.array([1, 1j, -1, -1j])[np.arange(count) % 4, None]
 
 
 def _derivative(coefficients):

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.stability.confirmation import confirm, confirm_gains
-from loopbook.stability.counting import count_closed, fraction_sums, open_loop
+from loopbook.stability.confirmation import confirm, confirm_gains, counted_exactly
+from loopbook.stability.counting import ON_LIMIT, count_closed, fraction_sums, open_loop
 from loopbook.stability.crossings import Real, asked, steps
+from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import Loops
 from plainmath.validation import positive, positive_numbers
@@ -180,7 +181,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
             unlimited = next_gain[points] >= LARGEST
             middle = np.where(unlimited, 2 * lower[points] + 1, (lower[points] + next_gain[points]) / 2)
             # between two gains that bring poles to the axis their number does not change: one gain stands for all
-            good = count_closed(loops.A[points], loops.B[points], middle) == 0
+            good = _counted(loops, points, lower[points], middle) == 0
             stable = points[good]
             found[stable] = np.where(unlimited[good], math.inf, next_gain[stable])
             place[stable] = np.where(unlimited[good], math.inf, next_place[stable] * unit[stable])
@@ -192,7 +193,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
         far_out = np.flatnonzero(searched & ((done * longest > MOST_TURNS) | (done > FURTHEST)))
         if len(far_out):
             least = np.maximum(lower, _least_gain(loops, done))[far_out]
-            still = count_closed(loops.A[far_out], loops.B[far_out], (lower[far_out] + least) / 2) == 0
+            still = _counted(loops, far_out, lower[far_out], (lower[far_out] + least) / 2) == 0
             if still.any():
                 k = far_out[still][0]
                 raise ValueError(
@@ -203,6 +204,22 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
         with np.errstate(divide="ignore"):
             window = np.maximum(4 * done, done + np.where(longest > 0, 20 / longest, 0))
         end = np.where(searched, np.fmin(need, window), done)
+
+
+def _counted(loops, points, lower, middle):
+    """The numbers of unstable poles with gains between two that bring poles to the axis, the lower one and another."""
+    counts = np.full(len(points), ON_LIMIT)
+    for share in (1.0, 0.6, 0.9):  # all gains between those two have the same number, but it may be hard to tell
+        left = np.flatnonzero(counts == ON_LIMIT)
+        if not len(left):
+            return counts
+        gains = lower[left] + share * (middle - lower)[left]
+        counts[left] = count_closed(loops.A[points[left]], loops.B[points[left]], gains)
+        if loops.exact is not None and counts[0] == ON_LIMIT:
+            counts[0] = counted_exactly(loops, float(gains[0]))
+    if (left := np.flatnonzero(counts == ON_LIMIT)).size:
+        raise UndecidedError(f"the number of unstable poles with the gain {middle[left[0]]:.6g}", 0.0, math.inf)
+    return counts
 
 
 def _complete_beyond(loops, far, lower, gain, is_endless, is_largest):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials, expanded
+from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials, expanded, turns
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
 from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, origin
@@ -113,8 +113,7 @@ class Loops:
                 some = removed == n
                 a[:-n, some], b[:-n, some] = a[n:, some], b[n:, some]
                 a[-n:, some] = b[-n:, some] = 0
-        turns = 1j ** np.arange(degree + 1)[:, None]
-        return a * turns, b * turns, more_a, more_b, removed
+        return a * turns(degree + 1), b * turns(degree + 1), more_a, more_b, removed
 
     def near_zero(self, which: np.ndarray, r: np.ndarray) -> tuple[Enclosure, Enclosure]:
         """Enclosures of A and B from -r to r, without the zeros at zero that both have."""

@@ -231,7 +231,7 @@ class Survey:
         loops = self.loops
         end = float(loops.beyond(np.full(1, 2.0))[0])
         end = max(end if end < 64 else 4.0, 4 * start)
-        w = np.geomspace(start, 2 * end, 80)
+        w = start * (2 * end / start) ** (np.arange(80) / 79)
         which = np.zeros(len(w), dtype=int)
         A, B = (x[0] for x in loops.values(which, w))
         if self.peak:

@@ -17,7 +17,9 @@ MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is 
 
 
 def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarray:
-    """Return Ms for many loops L = A/B at once, validated as `margins` does; nan for those that are not stable.
+    """Return Ms for many loops L = A/B at once; infinite for those that are not stable.
+
+    It is nan where double precision does not decide whether one is.
 
     Arguments:
         A, B: numerators and denominators, with as many powers, as `Quasipolynomials`; B may be a single one.
@@ -28,11 +30,13 @@ def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarra
     >>> B = Quasipolynomials(np.array([[[0.0], [1.0]]]), np.zeros((1, 1)))    # s
     >>> A = Quasipolynomials(np.array([[[0.3, 0.5, 2.0], [0.0] * 3]]), np.ones((1, 1)))    # K exp(-s)
     >>> largest_sensitivities(A, B).round(3).tolist()
-    [1.307, 1.59, nan]
+    [1.307, 1.59, inf]
     """
     found = np.full(max(A.count, B.count), math.nan)
     for points, numerators, denominators in of_one_order(A, B):
-        stable = np.flatnonzero(count_closed(numerators, denominators) == 0)
+        counts = count_closed(numerators, denominators)
+        found[points[counts > 0]] = math.inf
+        stable = np.flatnonzero(counts == 0)
         for start in range(0, len(stable), AT_ONCE):
             some = stable[start : start + AT_ONCE]
             found[points[some]] = _largest(Loops(numerators[some], denominators[some]))
