@@ -42,8 +42,8 @@ class Family:
     The loop is that of `loops.Loop`. All results are arrays of the shape that the values have together.
 
     Stability and Ms are validated by the bounds of single loops, on all frequencies, but for coefficients that are
-    rounded to sixteen digits. There is no count on both sides of a limit. Where sixteen digits do not decide, the member
-    is asked as a `Loop`, with more; what these do not decide either is an `UndecidedError`.
+    rounded to sixteen digits. Where these do not decide, the member is asked as a `Loop`, with more; what is then still
+    open is an `UndecidedError`.
 
     Arguments:
         process, controller: as for `loops.Loop`, with symbols.

@@ -69,7 +69,7 @@ def confirm(loops: Loops, found: dict[str, float], itself: bool = True) -> None:
         left = []
         for change, count in zip(changes, counts, strict=True):
             if count == ON_LIMIT and change.name != "phase_margin":
-                count = counted_exactly(loops, *change.at(share)[:2])
+                count = _exactly(loops, *change.at(share)[:2])
             if count == ON_LIMIT:
                 left.append(change)
             elif (count == 0) != change.inside and share > SHARES[0]:
@@ -127,7 +127,7 @@ def _counts(loops, changes, near, most):
     return found
 
 
-def counted_exactly(loops: Loops, factor: float, delay: float = 0.0) -> int:
+def _exactly(loops, factor, delay):
     """The number of unstable poles with more digits; on the limit where they do not decide."""
     A, B = loops.exact[:2]
     factor, delay = Fraction(factor), Fraction(delay)

@@ -8,16 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.stability.confirmation import confirm, confirm_gains, counted_exactly
-from loopbook.stability.counting import ON_LIMIT, count_closed, fraction_sums, open_loop
+from loopbook.stability.confirmation import confirm, confirm_gains
+from loopbook.stability.counting import ON_LIMIT, count_closed, fraction_sums, is_closed_loop_stable, open_loop
 from loopbook.stability.crossings import Real, asked, steps
 from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import Loops
+from plainmath.expressions import s
 from plainmath.validation import positive, positive_numbers
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from loopbook.quasipolynomials import DelayFraction
 
 LARGEST = 1e100
 FURTHEST = 1e15  # times the frequency of the fastest pole, beyond which nothing is looked for
@@ -44,8 +47,7 @@ def ultimate(process: object) -> tuple[float, float]:
     (1.5708, 4.0)
     """
     L = open_loop(process)
-    loops = Loops(*fraction_sums(L), L)
-    gain, frequency = (float(found[0]) for found in _stable_range(loops))
+    loops, gain, frequency = _ultimate(L)
     if math.isnan(gain):
         opposite = -L
         other = _stable_range(Loops(*fraction_sums(opposite), opposite))[0][0]
@@ -53,8 +55,16 @@ def ultimate(process: object) -> tuple[float, float]:
         least = float(_endless_gains(loops, HighFrequencies(loops, pivot=0.0))[0])
         below = f" below {least:.6g}, with which the gain at infinite frequency is 1," if least < math.inf else ""
         raise ValueError(f"no positive gain{below} makes the closed loop of {L.expr} stable{hint}")
-    confirm(loops, {"gain_margin": gain, "omega_180": frequency}, itself=False)
     return gain, 2 * math.pi / frequency if frequency else math.inf
+
+
+def _ultimate(L: DelayFraction) -> tuple[Loops, float, float]:
+    """A loop, its ultimate gain and the frequency of that; nan without one."""
+    loops = Loops(*fraction_sums(L), L)
+    gain, frequency = (float(found[0]) for found in _stable_range(loops))
+    if not math.isnan(gain):
+        confirm(loops, {"gain_margin": gain, "omega_180": frequency}, itself=False)
+    return loops, gain, frequency
 
 
 def boundary_pi(process: object, Ti: ArrayLike) -> np.ndarray | float:
@@ -121,7 +131,11 @@ def boundary_pid(process: object, Ti: ArrayLike, Td: ArrayLike, Tf: ArrayLike = 
         if above.coefficients[:, order + 1 :].any():
             raise ValueError(f"PID control of {L.expr} without filter is improper: expected a lag Tf that is positive")
         above, below = (Quasipolynomials(x.coefficients[:, : order + 1], x.delays) for x in (above, below))
-        found[points] = _confirmed(Loops(above, below))
+        try:
+            found[points] = _confirmed(Loops(above, below))
+        except UndecidedError:  # one by one there are more digits
+            times = zip(Ti.ravel()[points], d[points], f[points], strict=True)
+            found[points] = [_ultimate(L * (1 + 1 / (t * s) + td * s / (tf * s + 1)))[1] for t, td, tf in times]
     found = found.reshape(Ti.shape)
     return found if found.ndim else float(found)
 
@@ -211,15 +225,14 @@ def _counted(loops, points, lower, middle):
     counts = np.full(len(points), ON_LIMIT)
     for share in (1.0, 0.6, 0.9):  # all gains between those two have the same number, but it may be hard to tell
         left = np.flatnonzero(counts == ON_LIMIT)
-        if not len(left):
-            return counts
         gains = lower[left] + share * (middle - lower)[left]
         counts[left] = count_closed(loops.A[points[left]], loops.B[points[left]], gains)
-        if loops.exact is not None and counts[0] == ON_LIMIT:
-            counts[0] = counted_exactly(loops, float(gains[0]))
-    if (left := np.flatnonzero(counts == ON_LIMIT)).size:
-        raise UndecidedError(f"the number of unstable poles with the gain {middle[left[0]]:.6g}", 0.0, math.inf)
-    return counts
+        if (counts != ON_LIMIT).all():
+            return counts
+    if loops.fraction is not None:
+        return np.array([0 if is_closed_loop_stable(float(middle[0]) * loops.fraction) else math.inf])
+    gain = middle[np.flatnonzero(counts == ON_LIMIT)[0]]
+    raise UndecidedError(f"the number of unstable poles with the gain {gain:.6g}", 0.0, math.inf)
 
 
 def _complete_beyond(loops, far, lower, gain, is_endless, is_largest):

@@ -313,7 +313,7 @@ def _square(parts: Quasipolynomial) -> Quasipolynomial:
 
 
 def square(part: Sequence) -> list:
-    """The square of the size of a polynomial, its coefficients numbers or arrays, on the imaginary axis, in powers of ``w*w``."""
+    """The square of a polynomial's size on the imaginary axis, in powers of ``w*w``; coefficients may be arrays."""
     order = len(part) - 1
     return [
         sum((-1) ** abs(n - i) * part[i] * part[2 * n - i] for i in range(max(0, 2 * n - order), min(2 * n, order) + 1))

@@ -249,8 +249,8 @@ class Survey:
         return max([end, *(each for each in ends if each < 8 * end)])
 
     def _intervals(self, start, end):
-        """Geometric steps, in pieces where dead times turn the phase much, and the peak in the middle of one of them."""
-        which, a, b = steps(np.full(1, start), np.full(1, end))
+        """Geometric steps, divided where dead times turn the phase much, and the peak in the middle of one of them."""
+        _, a, b = steps(np.full(1, start), np.full(1, end))
         edges = np.append(a, b[-1])
         if self.peak and start < self.peak.place[0] < end:
             p, width = float(self.peak.place[0]), self.peak.width
