@@ -439,7 +439,11 @@ def read(value: object) -> DelayFraction:
     """
     if isinstance(value, DelayFraction):
         return value
-    H = transfer_function(value)
+    return _of_expression(transfer_function(value))
+
+
+@functools.lru_cache(maxsize=256)  # one process is read again for each of its controllers
+def _of_expression(H: sympy.Expr) -> DelayFraction:
     if letters := sorted(map(str, H.free_symbols - {s})):
         raise ValueError(f"give a number for {', '.join(letters)} in {H}")
     try:

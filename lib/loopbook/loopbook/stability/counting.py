@@ -44,7 +44,7 @@ MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each quasipol
 FEW_TERMS = 1  # the degree of expansions for many quasipolynomials
 NARROWER = Fraction(1, 2**80)  # of an interval, as a share; what is no fraction is known to 30 digits
 DIGITS = 25  # from which a coefficient may be no fraction
-RATIO = 2.0  # of the frequencies at the ends of an interval, at first
+RATIO, MANY_RATIO = 1.5, 2.0  # of the frequencies at the ends of an interval, at first; of 50 quasipolynomials and more
 
 
 class StabilityLimitError(ValueError):
@@ -426,7 +426,7 @@ class Turns:
         """The numbers of roots in the right half-plane."""
         sums = self.sums
         one, points = np.ones(sums.count), np.arange(sums.count)
-        which, a, b = geometric(_lowest(sums), one, near, RATIO)
+        which, a, b = geometric(_lowest(sums), one, near, RATIO if sums.count < 50 else MANY_RATIO)
         if self.removable:
             start, turn = above_origin(sums, self.removable, self.exact)
             self.phase += turn
