@@ -61,19 +61,8 @@ class NearZero(View):
     def __init__(self, loops: Loops, b: np.ndarray):
         super().__init__(loops, np.arange(loops.count), 0 * b, b)
         self.c, self.r = 0 * b, b
-        self.both = loops.near_zero(self.which, b)
-
-    @property
-    def A(self) -> Enclosure:
-        return self.both[0]
-
-    @property
-    def B(self) -> Enclosure:
-        return self.both[1]
-
-    @property
-    def early(self) -> Enclosure:
-        return self.both[0]
+        self.A, self.B = loops.near_zero(self.which, b)
+        self.early = self.A
 
     @functools.cached_property
     def C(self) -> Enclosure:
@@ -109,9 +98,6 @@ class SizeOne(Question):
         self.brackets = []
 
     def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
-        if isinstance(view, NearZero):  # `Loops.start` has taken care of that
-            self.crossing = np.zeros(len(view.which), dtype=bool)
-            return self.crossing, self.crossing
         A, B = view.early, view.B
         undecided = (B.least <= A.most) & (A.least <= B.most)
         self.crossing, noisy = np.zeros((2, len(view.which)), dtype=bool)
@@ -181,9 +167,6 @@ class Real(Question):
 
     def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
         which = view.which
-        if isinstance(view, NearZero):  # `Loops.start` has taken care of that
-            nothing = np.zeros(len(which), dtype=bool)
-            return nothing, nothing
         undecided = ~self.loops.is_real[which]
         undecided &= (self.highest[which] * view.early.most >= view.B.least) & (
             self.lowest[which] * view.early.least <= view.B.most
@@ -352,20 +335,10 @@ def asked(
     return walk(judge, which, a, b, names, loops.unit, loops.exact is not None, divide, most)
 
 
-def below(loops: Loops, questions: list[Question]) -> np.ndarray:
-    """A frequency up to which all questions are decided from zero on."""
-    start = loops.start.copy()
-    for _ in range(300):
-        view = NearZero(loops, start)
-        undecided = np.zeros(loops.count, dtype=bool)
-        for question in questions:
-            undecided |= question.judge(view)[0]
-        if not undecided.any():
-            for question in questions:
-                question.take(view, ~undecided)
-            return start
-        start = np.where(undecided, start / 4, start)
-    raise ValueError(f"{questions[0].name} is not decided at the frequency zero")
+def wider(loops: Loops, done: np.ndarray) -> np.ndarray:
+    """The end of the next window of frequency: four times as far, or so far that dead times turn by 20 rad."""
+    with np.errstate(divide="ignore"):
+        return np.maximum(4 * done, done + np.where(loops.longest > 0, 20 / loops.longest, 0))
 
 
 def steps(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

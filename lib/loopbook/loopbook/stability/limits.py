@@ -10,7 +10,7 @@ import numpy as np
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.confirmation import confirm, confirm_gains
 from loopbook.stability.counting import ON_LIMIT, count_closed, fraction_sums, is_closed_loop_stable, open_loop
-from loopbook.stability.crossings import Real, asked, steps
+from loopbook.stability.crossings import Real, asked, steps, wider
 from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import Loops
@@ -132,7 +132,9 @@ def boundary_pid(process: object, Ti: ArrayLike, Td: ArrayLike, Tf: ArrayLike = 
             raise ValueError(f"PID control of {L.expr} without filter is improper: expected a lag Tf that is positive")
         above, below = (Quasipolynomials(x.coefficients[:, : order + 1], x.delays) for x in (above, below))
         try:
-            found[points] = _confirmed(Loops(above, below))
+            loops = Loops(above, below)
+            found[points], frequencies = _stable_range(loops)
+            confirm_gains(loops, found[points], frequencies)
         except UndecidedError:  # one by one there are more digits
             times = zip(Ti.ravel()[points], d[points], f[points], strict=True)
             found[points] = [_ultimate(L * (1 + 1 / (t * s) + td * s / (tf * s + 1)))[1] for t, td, tf in times]
@@ -147,13 +149,6 @@ def _pid(i, d, f):
         Quasipolynomials(np.array([[i, 1 + i * f, f + d]]), nothing),
         Quasipolynomials(np.array([[0 * i, 1 + 0 * i, f]]), nothing),
     )
-
-
-def _confirmed(loops: Loops) -> np.ndarray:
-    """The upper ends of the lowest ranges of gains for which loops are stable."""
-    gains, frequencies = _stable_range(loops)
-    confirm_gains(loops, gains, frequencies)
-    return gains
 
 
 def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
@@ -203,8 +198,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
             searched[points[good | (next_gain[points] >= np.minimum(endless[points], LARGEST))]] = False
         if not searched.any():
             return found, place
-        longest = loops.longest
-        far_out = np.flatnonzero(searched & ((done * longest > MOST_TURNS) | (done > FURTHEST)))
+        far_out = np.flatnonzero(searched & ((done * loops.longest > MOST_TURNS) | (done > FURTHEST)))
         if len(far_out):
             least = np.maximum(lower, _least_gain(loops, done))[far_out]
             still = _counted(loops, far_out, lower[far_out], (lower[far_out] + least) / 2) == 0
@@ -215,9 +209,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
                     f"stable, and what is beyond the frequency {done[k] * unit[k]:.6g} is not decided"
                 )
             searched[far_out] = False
-        with np.errstate(divide="ignore"):
-            window = np.maximum(4 * done, done + np.where(longest > 0, 20 / longest, 0))
-        end = np.where(searched, np.fmin(need, window), done)
+        end = np.where(searched, np.fmin(need, wider(loops, done)), done)
 
 
 def _counted(loops, points, lower, middle):

@@ -19,7 +19,7 @@ from loopbook.stability.counting import (
     is_stable,
     open_loop,
 )
-from loopbook.stability.crossings import Real, SizeOne, asked, below, phase_left, steps
+from loopbook.stability.crossings import Real, SizeOne, asked, phase_left, steps, wider
 from loopbook.stability.enclosures import MOST_INTERVALS, divided
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import ENOUGH, Loops
@@ -193,7 +193,7 @@ class Survey:
             if questions == [self.size] and self.far.exceeds_one:
                 return
             raise ValueError("whether the loop's gain at ever higher frequencies stays away from 1 is not decided")
-        done = below(loops, questions)
+        done = self.peak.below() if self.peak else loops.start
         longest = float(loops.longest[0])
         end, left, most = self._scout(float(done[0]), questions), questions, MOST_INTERVALS
         while True:
@@ -206,8 +206,7 @@ class Survey:
             furthest = max(math.inf if math.isnan(each) else each for each in ends.values())
             if (furthest == math.inf and (end * longest > MOST_TURNS or end > FURTHEST)) or end > 1e3 * FURTHEST:
                 raise ValueError(self._undecided(left, end))
-            window = max(4 * end, end + 20 / longest if longest else 0)
-            end = min(furthest, window)
+            end = min(furthest, float(wider(loops, done)[0]))
             if (end - float(done[0])) * longest > most:
                 raise ValueError(self._undecided(left, float(done[0])))
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.stability.crossings import Question, View
+from loopbook.stability.crossings import NearZero, Question, View
 from loopbook.stability.loops import DOUBTFUL, ENOUGH
 
 if TYPE_CHECKING:
@@ -53,6 +53,16 @@ class Peak(Question):
             undecided[some] = ~above.is_positive
             noisy[some] = above.is_noisy | C.is_noisy | (C.noise > 1e-10 * C.sizes[0])
         return undecided, noisy
+
+    def below(self) -> np.ndarray:
+        """A frequency up to which it is decided from zero on, and crossings are by `Loops.start`."""
+        start = self.loops.start.copy()
+        for _ in range(300):
+            undecided = self.judge(NearZero(self.loops, start))[0]
+            if not undecided.any():
+                return start
+            start = np.where(undecided, start / 4, start)
+        raise ValueError(f"{self.name} is not decided at the frequency zero")
 
 
 def to_the_top(loops: Loops, question: Peak) -> None:

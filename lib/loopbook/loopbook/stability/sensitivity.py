@@ -8,11 +8,12 @@ import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_closed, of_one_order
-from loopbook.stability.crossings import asked, below, steps
+from loopbook.stability.crossings import asked, steps, wider
 from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.loops import ENOUGH, Loops, positive_beyond, square
 from loopbook.stability.peaks import Peak
 
+AT_ONCE = 2000
 MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
 
 
@@ -43,14 +44,11 @@ def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarra
     return found
 
 
-AT_ONCE = 2000
-
-
 def _largest(loops):
     every = np.arange(loops.count)
     peak = Peak(loops)
     peak.see(every, _at_endless_frequency(loops), np.full(loops.count, math.inf))
-    done = below(loops, [peak])
+    done = peak.below()
     end = np.maximum(np.clip(np.nan_to_num(loops.beyond(np.full(loops.count, 2.0)), nan=4.0), 0, 64), 4 * done)
     while True:
         asked(loops, [peak], *steps(done, end))
@@ -61,9 +59,7 @@ def _largest(loops):
         far_out = (need == math.inf) & ((done * loops.longest > MOST_TURNS) | (done > 1e15))
         if (lost := np.flatnonzero(far_out)).size:
             raise UndecidedError(peak.name, float(done[lost[0]]), math.inf, float(loops.unit[lost[0]]))
-        with np.errstate(divide="ignore"):
-            window = np.maximum(4 * done, done + np.where(loops.longest > 0, 20 / loops.longest, 0))
-        end = np.where(need > done, np.minimum(need, window), done)
+        end = np.where(need > done, np.minimum(need, wider(loops, done)), done)
 
 
 def _at_endless_frequency(loops):
