@@ -181,25 +181,15 @@ class Real(Question):
         away = np.where(middle.real < 0, abs(middle.imag), abs(middle)) > product.spread
         monotone = ~away & product.imag.is_monotone
         if len(candidates := some[monotone]):
-            self._solve(view, candidates)
+            points, a, b = (x[candidates] for x in (which, view.a, view.b))
+            ends = (self.loops.values(points, end, 0, view.precise) for end in (a, b))
+            self.solve(points, a, b, *((A[0] * B[0].conj()).imag for A, B in ends))
         left = ~away & ~monotone
         if not self.all_gains:
             left &= ~_misses(A, B, self.lowest[which[some]], self.highest[which[some]])
         undecided[some] = left
         noisy[some] = product.is_noisy | (abs(middle.imag) < 16 * product.noise)
         return undecided, noisy
-
-    def _solve(self, view, candidates):
-        """Find the crossings in intervals on which Im A conj(B) is monotone."""
-        points, a, b = (x[candidates] for x in (view.which, view.a, view.b))
-        if len(new := (~self.is_known(points, a, b)).nonzero()[0]) < len(points):
-            points, a, b = points[new], a[new], b[new]
-        if not len(new):
-            return
-        at_a, at_b = (
-            (A[0] * B[0].conj()).imag for A, B in (self.loops.values(points, end, 0, view.precise) for end in (a, b))
-        )
-        self.solve(points, a, b, at_a, at_b)
 
     def solve(self, points: np.ndarray, a: np.ndarray, b: np.ndarray, at_a: np.ndarray, at_b: np.ndarray) -> None:
         """Find the crossings in intervals with values of Im A conj(B) at the ends, if these have different signs."""
@@ -275,13 +265,13 @@ def _solved(loops, which, a, b, function, rising, w, precise):
     for _ in range(100):
         if not len(moving):
             break
-        value, slope, bend = function(*loops.values(which[moving], w[moving], 2, precise))
+        value, slope, curvature = function(*loops.values(which[moving], w[moving], 2, precise))
         before = (value < 0) == rising[moving]
         a[moving] = np.where(before, w[moving], a[moving])
         b[moving] = np.where(before, b[moving], w[moving])
         with np.errstate(divide="ignore", invalid="ignore"):
             step = value / slope  # no squares of values, which for a high order would be smaller than all numbers
-            better = w[moving] - 2 * step / (2 - step * (bend / slope))
+            better = w[moving] - 2 * step / (2 - step * (curvature / slope))
         outside = ~((better >= a[moving]) & (better <= b[moving]))
         better[outside] = ((a + b) / 2)[moving][outside]
         change = abs(better - w[moving])

@@ -9,7 +9,14 @@ import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.confirmation import confirm, confirm_gains
-from loopbook.stability.counting import ON_LIMIT, count_closed, fraction_sums, is_closed_loop_stable, open_loop
+from loopbook.stability.counting import (
+    ON_LIMIT,
+    count_closed,
+    fraction_sums,
+    is_closed_loop_stable,
+    of_one_order,
+    open_loop,
+)
 from loopbook.stability.crossings import Real, asked, steps, wider
 from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.high_frequencies import HighFrequencies
@@ -121,16 +128,14 @@ def boundary_pid(process: object, Ti: ArrayLike, Td: ArrayLike, Tf: ArrayLike = 
     A, B = fraction_sums(L)
     i, d, f = 1 / Ti.ravel(), Td.ravel(), np.where(Td > 0, Tf, 0).ravel()
     found = np.empty(Ti.size)
-    kinds = (d > 0) + 1 * (f > 0)  # PI, and PID without and with filter, are loops of different order
-    for kind in set(kinds.tolist()):
-        points = kinds == kind
-        above, below = (
-            part * of_pid for part, of_pid in zip((A, B), _pid(i[points], d[points], f[points]), strict=True)
-        )
-        order = np.flatnonzero(below.coefficients.any(axis=(0, 2)))[-1]
-        if above.coefficients[:, order + 1 :].any():
-            raise ValueError(f"PID control of {L.expr} without filter is improper: expected a lag Tf that is positive")
-        above, below = (Quasipolynomials(x.coefficients[:, : order + 1], x.delays) for x in (above, below))
+    above, below = (part * of_pid for part, of_pid in zip((A, B), _pid(i, d, f), strict=True))
+    try:
+        groups = list(of_one_order(above, below))  # PI, and PID without and with filter
+    except ValueError:
+        raise ValueError(
+            f"PID control of {L.expr} without filter is improper: expected a lag Tf that is positive"
+        ) from None
+    for points, above, below in groups:
         try:
             loops = Loops(above, below)
             found[points], frequencies = _stable_range(loops)

@@ -23,8 +23,8 @@ from loopbook.stability.crossings import Real, SizeOne, asked, phase_left, steps
 from loopbook.stability.enclosures import MOST_INTERVALS, divided
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import ENOUGH, Loops
-from loopbook.stability.peaks import Peak, to_the_top
 from loopbook.stability.polynomials import unstable_roots_of
+from loopbook.stability.sensitivity import Peak, to_the_top
 
 MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
 NEAR_PEAK = np.array([-36.0, -12.0, -4.0, -1.0, 1.0, 4.0, 12.0, 36.0]) / 16  # ends of intervals, in widths of it
