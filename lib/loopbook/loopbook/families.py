@@ -20,8 +20,8 @@ from loopbook.loops import Loop
 from loopbook.pid import PID
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.symbols import broadcast_values, fraction_of, with_values
-from loopbook.stability import Margins
-from loopbook.stability.counting import count_closed
+from loopbook.stability import Margins, is_closed_loop_stable
+from loopbook.stability.counting import ON_LIMIT, count_closed
 from loopbook.stability.sensitivity import largest_sensitivities
 from loopbook.transfer import transfer_function
 from plainmath.expressions import exact
@@ -41,6 +41,10 @@ class Family:
 
     The loop is that of `loops.Loop`. All results are arrays of the shape that the values have together.
 
+    Stability and Ms are validated by the bounds of single loops, on all frequencies, but for coefficients that are
+    rounded to sixteen digits. Where these do not decide, the member is asked as a `Loop`, with more; what is then still
+    open is an `UndecidedError`.
+
     Arguments:
         process, controller: as for `loops.Loop`, with symbols.
         **values: the values of the symbols by their names, numbers or arrays that fit together.
@@ -54,6 +58,8 @@ class Family:
     >>> from loopbook.pid import PID
     >>> Kp, Ti = sympy.symbols("Kp Ti", positive=True)
     >>> family = Family(sympy.exp(-s) / (2 * s + 1), PID(Kp, Ti), Kp=[0.5, 1, 5], Ti=2)
+    >>> family
+    Family(exp(-s)/(2*s + 1), PID(Kp=Kp, Ti=Ti); 3 loops, validated in double precision)
     >>> family.is_stable
     array([ True,  True, False])
     >>> family.Ms().round(4)
@@ -73,6 +79,11 @@ class Family:
         self._values, self.shape = broadcast_values(values)
         self._process, self._controller = P, C
         self._given = controller
+
+    def __repr__(self) -> str:
+        controller = self._given if isinstance(self._given, PID) else self._controller
+        count = math.prod(self.shape)
+        return f"Family({self._process}, {controller}; {count:,} loops, validated in double precision)"
 
     # ---- the loop in numbers
 
@@ -104,14 +115,19 @@ class Family:
     def is_stable(self) -> np.ndarray:
         """Whether each closed loop is stable; a pole that controller and process cancel is not seen.
 
-        False stands also for a loop so close to the limit that sixteen digits do not decide; `Loop.is_stable` does.
+        Of a loop so close to the limit that sixteen digits do not decide, the member itself is asked, with more.
         """
-        return (count_closed(*self._open) == 0).reshape(self.shape)
+        counts = count_closed(*self._open)
+        for point in np.flatnonzero(counts == ON_LIMIT):
+            counts[point] = 0 if is_closed_loop_stable(self._member(int(point))) else math.inf
+        return (counts == 0).reshape(self.shape)
 
     def Ms(self) -> np.ndarray:
         """Return the largest sensitivities, the largest values of abs(1/(1 + L)); infinite for unstable loops."""
         found = largest_sensitivities(*self._open)
-        return np.where(np.isnan(found), math.inf, found).reshape(self.shape)
+        for point in np.flatnonzero(np.isnan(found)):
+            found[point] = self._member(int(point)).margins().Ms if self.is_stable.flat[point] else math.inf
+        return found.reshape(self.shape)
 
     def ise(self, mode: str = "servo") -> np.ndarray:
         """Return the integrals of the squared error after a unit step, infinite for unstable loops.
@@ -166,12 +182,15 @@ class Family:
         >>> Family(1 / s, K, K=[0.5, 2]).loops[1].servo
         System(2/(s + 2))
         """
-        symbols = [x for x in (self._process + self._controller).free_symbols if str(x) in self._values]
         found = np.empty(math.prod(self.shape), dtype=object)
         for point in range(found.size):
-            values = {x: exact(float(self._values[str(x)][point])) for x in symbols}
-            found[point] = Loop(self._process.xreplace(values), self._controller_with(values))
+            found[point] = self._member(point)
         return found.reshape(self.shape)
+
+    def _member(self, point: int) -> Loop:
+        symbols = [x for x in (self._process + self._controller).free_symbols if str(x) in self._values]
+        values = {x: exact(float(self._values[str(x)][point])) for x in symbols}
+        return Loop(self._process.xreplace(values), self._controller_with(values))
 
     def _controller_with(self, values: dict[sympy.Expr, sympy.Expr]) -> PID | sympy.Expr:
         """The controller with numbers for its symbols, a `PID` if one was given."""

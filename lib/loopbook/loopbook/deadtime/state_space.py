@@ -88,22 +88,22 @@ def schwarz_form(below: Sequence[int], above: Sequence[Sequence[int]]) -> tuple[
     >>> (C @ np.linalg.solve(1j * np.eye(2) - A, [0, 1])).round(12)
     array([0.2-0.6j])
     """
-    from flint import arb, ctx
+    from mpmath import mpf, sqrt, workprec
 
     n = len(below) - 1
     m = next(k for k, c in enumerate(below) if c)  # integrators
     A, C, direct = np.zeros((n, n)), np.zeros((len(above), n)), np.zeros(len(above))
-    with ctx.workprec(BITS * (n + 4)):
-        D = [arb(c) / below[-1] for c in below[m:]]
-        shift, speed, damping, couplings, basis = arb(0), arb(1), arb(0), [], []
+    with workprec(BITS * (n + 4)):
+        D = [mpf(c) / below[-1] for c in below[m:]]
+        shift, speed, damping, couplings, basis = mpf(0), mpf(1), mpf(0), [], []
         if n > m:
-            speed = 1 / max(abs(d / D[0]).root(i) for i, d in enumerate(D) if i)
+            speed = 1 / max(abs(d / D[0]) ** (mpf(1) / i) for i, d in enumerate(D) if i)
             while not (found := _routh(_moved(D, shift))):
-                shift = 2 * shift if shift > 0 else speed / 4
+                shift = 2 * shift or speed / 4
             damping, couplings, basis = found
         # the equations are those of neighbours; the states' units make what leads there and back equal
-        there = [*[speed] * (m if n > m else m - 1), *(c.sqrt() for c in couplings)]
-        units = [arb(1)] * n
+        there = [*[speed] * (m if n > m else m - 1), *map(sqrt, couplings)]
+        units = [mpf(1)] * n
         for k in range(n - 2, -1, -1):
             units[k] = units[k + 1] / there[k]
             A[k, k + 1] = there[k]
@@ -111,7 +111,7 @@ def schwarz_form(below: Sequence[int], above: Sequence[Sequence[int]]) -> tuple[
         for k in range(m, n):
             A[k, k] = shift - (damping if k == n - 1 else 0)
         for number, row in enumerate(above):
-            part = [arb(c) / below[-1] for c in row] + [arb(0)] * (n + 1 - len(row))
+            part = [mpf(c) / below[-1] for c in row] + [mpf(0)] * (n + 1 - len(row))
             direct[number] = part[n]
             rest = _moved([c - part[n] * d for c, d in zip(part[m:], D, strict=True)], shift)
             for k in range(n - m - 1, -1, -1):
@@ -140,10 +140,12 @@ def companion_form(below: Sequence[int], above: Sequence[Sequence[int]]) -> tupl
 
 def _moved(p, shift):
     """The coefficients of p(s + shift), the lowest power first."""
-    from flint import arb, arb_poly
-
-    moved = arb_poly(p)(arb_poly([shift, 1])).coeffs()
-    return moved + [arb(0)] * (len(p) - len(moved))
+    p = list(p)
+    if shift:
+        for i in range(len(p)):
+            for k in range(len(p) - 2, i - 1, -1):
+                p[k] += shift * p[k + 1]
+    return p
 
 
 def _routh(p):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 __all__ = ["StepInfo", "first_time_at", "settled_response", "step_info", "zeros_of"]
 
 MOST_DOUBLINGS = 40  # of the time up to which a response is followed
+FEW_SEGMENTS, MOST_SEGMENTS = 1_000, 16_000  # after which a single mode is looked for, and none is found
+ONE_MODE = 1e-9  # of what is left of a response, that may be more than a mode
 ROUNDING = 1e-11  # a smaller overshoot, as a share of the peak, is none
 REAL = 1e-7  # imaginary part of a root, of a segment of length 2, that may be rounding
 
@@ -48,8 +51,10 @@ class StepInfo(NamedTuple):
 
 def step_info(
     response_until: Callable[[float], Response],
+    begin: float,
     horizon: float,
     final: float,
+    slowest: Callable[[], list[complex]],
     settling: float = 0.02,
     rise: Sequence[float] = (0.1, 0.9),
 ) -> StepInfo:
@@ -57,24 +62,27 @@ def step_info(
 
     Arguments:
         response_until: function of an end, that returns the `Response` up to there.
-        horizon: an end to begin with; the response is followed until it has settled.
+        begin, horizon: ends to begin with, the first in case that it swings very often up to the second, before which
+            it is not taken for settled.
         final: the final value.
+        slowest: function that returns some of the slowest poles.
         settling: half the width of the band, as a share.
         rise: two shares of the final value, increasing.
     Raises:
-        ValueError: for shares that are none, or a response that does not settle however long it is followed.
+        ValueError: for shares that are none, or a response of which it is not decided when it settles, because several
+            modes of it last too long.
     """
     number("the band for settling", settling, "a share between 0 and 1", lambda x: 0 < x < 1)
     low, high = (number("a share of the rise", share, "one from 0 to 1", lambda x: 0 <= x < 1) for share in rise)
     if not low < high:
         raise ValueError(f"the rise is from {low:g} to {high:g}: expected increasing shares")
-    response = settled_response(response_until, horizon, final, settling)
+    response, mode = settled_response(response_until, begin, horizon, final, settling, slowest)
     (top, top_time), (bottom, bottom_time) = _extreme(response, 1), _extreme(response, -1)
     peak, peak_time = (top, top_time) if top >= bottom else (-bottom, bottom_time)
     band = settling * (abs(final) or abs(peak))
     if final and abs(peak) <= abs(final) * (1 + ROUNDING):
         peak, peak_time = final, math.inf
-    settled = _last_time_outside(response, final, band)
+    settled = mode.last_time_outside(band) if mode else _last_time_outside(response, final, band)
     if not final:
         return StepInfo(math.nan, settled, math.nan, math.nan, float(peak), float(peak_time), 0.0)
     beyond, opposite = (top, bottom) if final > 0 else (bottom, top)
@@ -85,23 +93,79 @@ def step_info(
 
 
 def settled_response(
-    response_until: Callable[[float], Response], horizon: float, final: float, settling: float
-) -> Response:
+    response_until: Callable[[float], Response],
+    begin: float,
+    horizon: float,
+    final: float,
+    settling: float,
+    slowest: Callable[[], list[complex]],
+) -> tuple[Response, Mode | None]:
     """The response, followed twice as far until its later three quarters stay within a fifth of the band.
 
     A single quarter could lie between two swings, or within a dead time; and what may yet come is smaller than what has
-    been in as long a time, since a stable response decays.
+    been in as long a time, since a stable response decays. Where that takes long, it ends as soon as the later half is
+    a single mode, that of one of the slowest poles, which is then returned as well.
     """
-    end = horizon
+    end, poles = min(begin, horizon), None
     for _ in range(MOST_DOUBLINGS):
         response = response_until(end)
         first, sizes = response.coefficients[:, 0], abs(response.coefficients).sum(axis=1)
         away = abs(first - final) + sizes - abs(first)
         band = settling * (abs(final) or sizes.max(initial=0.0))
-        if (away[response.edges[1:] > end / 4] <= band / 5).all():
-            return response
-        end *= 2
-    raise ValueError(f"the response has not settled at {final:g} after t = {end:g}: expected one that does")
+        if end >= horizon and (away[response.edges[1:] > end / 4] <= band / 5).all():
+            return response, None
+        if len(sizes) > FEW_SEGMENTS:
+            poles = slowest() if poles is None else poles
+            found = (Mode.last(response, final, pole) for pole in poles)
+            if mode := next(filter(None, found), None):
+                return response, mode
+        if len(sizes) > MOST_SEGMENTS:
+            break
+        end = 2 * end if end >= horizon else min(4 * end, horizon)
+    raise ValueError(
+        f"when the response settles at {final:g} is not decided: after t = {end:g} it has not, and what is left is "
+        f"more than one mode"
+    )
+
+
+class Mode(NamedTuple):
+    """What is left of a response from a time on, ``Re(amplitude*exp(pole*(t - begin)))``."""
+
+    begin: float
+    amplitude: complex
+    pole: complex
+
+    @classmethod
+    def last(cls, response: Response, final: float, pole: complex) -> Mode | None:
+        """That of a complex pole, if the later half of a response is nothing else, and several of its periods long."""
+        half = response.edges[-1] / 2
+        times = response.quadrature()[0]
+        times = times[times[:, 0] >= half].ravel()
+        if pole.imag * half < 4 * math.pi:
+            return None
+        left = response(times) - final
+        swing = np.exp(pole * (times - times[0]))
+        basis = np.stack([swing.real, -swing.imag], axis=1)
+        shares = np.linalg.lstsq(basis, left)[0]
+        if abs(basis @ shares - left).max() > ONE_MODE * abs(left).max():
+            return None
+        return cls(float(times[0]), complex(*shares), pole)
+
+    def __call__(self, t: float) -> float:
+        return (self.amplitude * cmath.exp(self.pole * (t - self.begin))).real
+
+    def last_time_outside(self, band: float) -> float:
+        """When the size of it is that of the band, and later below."""
+        rate, w = -self.pole.real, self.pole.imag
+        # the last swing out of the band ends on the way to the next zero
+        turning = cmath.phase(self.amplitude * self.pole)
+        latest = math.log(abs(self.amplitude) * w / abs(self.pole) / band) / rate
+        top = (math.floor((w * latest + turning) / math.pi - 0.5) + 0.5) * math.pi - turning
+        low, high = self.begin + top / w, self.begin + (top + math.pi / 2) / w
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (middle, high) if abs(self(middle)) > band else (low, middle)
+        return low
 
 
 def _extreme(response: Response, sign: int) -> tuple[float, float]:

@@ -260,13 +260,23 @@ class System(DelayFraction):
             settling: half the width of the band in which the response has settled, as a share of the final value.
             rise: the shares of the final value between which the rise time is counted.
         Raises:
-            ValueError: for a system that is not stable, or shares that are none.
+            ValueError: for a system that is not stable, shares that are none, or a response of which it is not decided
+                when it settles, because several modes of it last too long.
 
         >>> info = closed_loop(sympy.exp(-s) / (2 * s)).step_info()
         >>> round(info.overshoot, 4), round(info.peak_time, 4)
         (0.0405, 4.7401)
         """
-        return step_info(self.step_until, *self._end_and_final_value(), settling, rise)
+        return step_info(self.step_until, *self._ends_and_final_value(), self._slowest, settling, rise)
+
+    def _slowest(self) -> list[complex]:
+        """Some of the slowest poles; none where infinitely many may be as slow."""
+        if any(len(part) > self.order for delay, part in self.denominator.items() if delay):
+            return []
+        try:
+            return self.poles(4)
+        except ValueError:
+            return []
 
     def response_time(self, share: float = 1 - math.exp(-1)) -> float:
         """Return the time at which the unit step response first reaches a share of its final value, by default 63 %.
@@ -277,18 +287,22 @@ class System(DelayFraction):
         5.0
         """
         number("the share", share, "one between 0 and 1", lambda x: 0 < x < 1)
-        end, final = self._end_and_final_value()
+        *ends, final = self._ends_and_final_value()
         if not final:
             raise ValueError(f"the step response of {self.expr} settles at 0: expected a number other than zero")
-        return first_time_at(settled_response(self.step_until, end, final, 0.5), share * final)
+        return first_time_at(settled_response(self.step_until, *ends, final, 0.5, self._slowest)[0], share * final)
 
-    def _end_and_final_value(self) -> tuple[float, float]:
-        """A time to begin with, and the value at which the step response settles."""
+    def _ends_and_final_value(self) -> tuple[float, float, float]:
+        """Two times to begin with, of 2,000 radians of the fastest pole and so, and the value of the step response."""
         if not self.is_stable:
             raise ValueError(f"{self.expr} is not stable: its step response does not settle")
         lags = [c / d for part in self.denominator.values() for c, d in itertools.pairwise(map(abs, part[::-1])) if d]
         slow = min((ratio for ratio in lags if ratio), default=0)
-        return float(sum(self.delays)) * 2 + (4 / float(slow) if slow else 1.0), float(self.static_gain)
+        *lower, highest = self.denominator[0]
+        sizes = ((math.log(abs(c)) - math.log(highest)) / k for k, c in enumerate(reversed(lower), 1) if c)
+        fast = math.exp(max(sizes, default=-math.inf))
+        end = float(sum(self.delays)) * 2 + (4 / float(slow) if slow else 1.0)
+        return 2000 / fast if fast else end, end, float(self.static_gain)
 
     # ---- pictures
 

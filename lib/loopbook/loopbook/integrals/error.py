@@ -51,7 +51,8 @@ def error_of(process: object, controller: object, mode: str, from_setpoint: obje
 def blocks_of(*given: object) -> list[DelayFraction]:
     """Process, controller and what is between setpoint and control signal, as fractions without common factors."""
     try:
-        return [read(x).fraction for x in given]
+        fractions = {id(x): read(x).fraction for x in given}  # the setpoint's is often the controller
+        return [fractions[id(x)] for x in given]
     except ValueError:
         blocks = [transfer_function(x) for x in given]
         if symbols := sorted(map(str, set().union(*(x.free_symbols for x in blocks)) - {s})):

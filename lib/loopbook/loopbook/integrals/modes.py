@@ -169,27 +169,26 @@ def slow_modes(fraction: ErrorFraction, rate: float, most: int = MOST_MODES) -> 
 
 def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex] | None:
     """A pole, from one that is nearly that, and its residue, each with all digits of floating point."""
-    from flint import acb, acb_series, ctx, fmpq
+    import mpmath
 
-    def around(parts, p):
-        """The value and the slope of a quasipolynomial."""
-        x, total = acb_series([p, 1], prec=2), acb_series([0], prec=2)
+    def value(parts, p, k):
+        total = mpmath.mpf(0)
         for delay, part in parts.items():
-            late = x * -fmpq(delay.numerator, delay.denominator)
-            total += functools.reduce(lambda value, c: value * x + c, reversed(part)) * late.exp()
-        return total[0], total[1]
+            late = mpmath.mpf(delay.numerator) / delay.denominator
+            polynomial, slope = mpmath.polyval(part[::-1], p, derivative=True)
+            total += (slope - late * polynomial if k else polynomial) * mpmath.exp(-late * p)
+        return total
 
-    with ctx.workdps(DIGITS):
-        start = p = acb(pole)
+    with mpmath.workdps(DIGITS):
+        p = mpmath.mpf(pole.real) if not pole.imag else mpmath.mpc(pole)
         for _ in range(20):
-            value, slope = around(fraction.D, p)
-            step = (value / slope).mid()
-            p = (p - step).mid()
-            if abs(step) <= abs(p) * 10 ** (5 - DIGITS):
+            step = value(fraction.D, p, 0) / value(fraction.D, p, 1)
+            p -= step
+            if abs(step) <= mpmath.mpf(10) ** (5 - DIGITS) * abs(p):
                 break
         else:
             return None
-        if not abs(p - start) <= 1e-5 * abs(p) or not p.real < 0:
+        if abs(p - mpmath.mpmathify(pole)) > 1e-5 * abs(p) or not p.real < 0:
             return None
-        residue = around(fraction.N, p)[0] / around(fraction.D, p)[1] / p**fraction.pole
+        residue = value(fraction.N, p, 0) / value(fraction.D, p, 1) / p**fraction.pole
         return complex(p), complex(residue)

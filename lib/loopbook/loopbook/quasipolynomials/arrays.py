@@ -124,11 +124,7 @@ class Quasipolynomials:
     def taylor(self, points: np.ndarray, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
         """The coefficients of the powers of h in the quasipolynomials at s = j (w + h): array [power, frequency]."""
         if self.count == 1:
-            powers, total = powers_of(w, self.order + 1), 0
-            for matrix, delay in zip(self.turned, self.delays[:, 0].tolist(), strict=True):
-                value = matrix[: degree + 1] @ powers
-                total = total + (value * np.exp(-1j * (w * delay)) if delay else value)
-            return total
+            return expanded(self.turned, self.delays[:, 0], w, degree).sum(axis=0)
         # in powers of w alone, which is quicker: the even powers are real, the odd ones imaginary
         powers = powers_of(w, self.order + 1) * np.resize([1.0, 1.0, -1.0, -1.0], self.order + 1)[:, None]
         total = np.zeros((degree + 1, len(w)), dtype=complex)
@@ -137,7 +133,7 @@ class Quasipolynomials:
             even, odd = (np.einsum("kij,ij->kj", chosen[:, first::2], powers[first::2]) for first in (0, 1))
             value = even + 1j * odd
             total += value * np.exp(-1j * (w * delay[points])) if delay.any() else value
-        return total * 1j ** np.arange(degree + 1)[:, None]
+        return total * turns(degree + 1)
 
     def sizes(self, points: np.ndarray, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
         """Bounds of the coefficients of the powers 0 to degree + 1 in `taylor`, from zero to the frequency w.
@@ -152,25 +148,56 @@ class Quasipolynomials:
     @functools.cached_property
     def _expansion(self):
         """Array [part, k, power, point]: polynomials that, times ``exp(-delay*s)``, are the derivatives over k!."""
-        return np.array(self._expanded(self.coefficients, -self.delays, DEGREE)).swapaxes(0, 1)
+        return _derivatives(self.coefficients, -self.delays, DEGREE)
 
     @functools.cached_property
     def turned(self) -> np.ndarray:
         """What a single quasipolynomial is expanded with: arrays [part, k, power], in powers of the frequency."""
-        turns = 1j ** (np.arange(DEGREE + 1)[:, None] + np.arange(self.order + 1))
-        return self._expansion[..., 0] * turns
+        return self._expansion[..., 0] * (turns(DEGREE + 1) * turns(self.order + 1).T)
 
     @functools.cached_property
     def _sizes(self):
-        expanded = self._expanded(abs(self.coefficients), abs(self.delays), DEGREE + 1)
-        return np.array([each.sum(axis=0) for each in expanded])
+        return _derivatives(abs(self.coefficients), abs(self.delays), DEGREE + 1).sum(axis=0)
 
-    def _expanded(self, coefficients, rates, degree):
-        derivatives = [coefficients]
-        for i in range(1, min(degree, self.order) + 1):
-            derivatives.append(_derivative(derivatives[-1]) / i)
-        late = [(rates**k / math.factorial(k))[:, None] for k in range(degree + 1)]
-        return [sum(part * late[k - i] for i, part in enumerate(derivatives[: k + 1])) for k in range(degree + 1)]
+
+def expanded(matrices: np.ndarray, delays: np.ndarray, w: np.ndarray, degree: int) -> np.ndarray:
+    """The parts of the expansions of single quasipolynomials at frequencies: array [part, power, frequency]."""
+    parts = matrices[:, : degree + 1] @ powers_of(w, matrices.shape[2])
+    if delays.any():
+        parts *= np.exp(-1j * np.multiply.outer(delays, w))[:, None]
+    return parts
+
+
+def _derivatives(coefficients, rates, degree):
+    """Array [part, k, power, point]: ``(d/ds + rate)**k / k!`` of polynomials [part, power, point]."""
+    parts, powers, count = coefficients.shape
+    padded = np.zeros((parts, powers + degree, count), dtype=coefficients.dtype)
+    padded[:, :powers] = coefficients
+    indices, binomials = _taylor(powers, degree)
+    terms = padded[:, indices] * binomials
+    if not rates.any():
+        return terms
+    late = np.ones((parts, degree + 1, 1, count))
+    late[:, 1:, 0] = rates[:, None] / np.arange(1, degree + 1)[:, None]
+    late = late.cumprod(axis=1)
+    total = terms[:, :1] * late
+    for i in range(1, min(degree + 1, powers)):
+        total[:, i:] += terms[:, i, None] * late[:, : degree + 1 - i]
+    return total
+
+
+@functools.cache
+def _taylor(powers, degree):
+    """Which coefficient, and how many times, is that of a power in a derivative over k!: arrays [k, power]."""
+    indices = np.arange(degree + 1)[:, None] + np.arange(powers)
+    binomials = [[float(math.comb(n, k)) for n in row] for k, row in enumerate(indices.tolist())]
+    return indices, np.array(binomials)[..., None]
+
+
+@functools.cache
+def turns(count: int) -> np.ndarray:
+    """The powers 0, 1 ... of j, a column."""
+    return np.array([1, 1j, -1, -1j])[np.arange(count) % 4, None]
 
 
 def _derivative(coefficients):

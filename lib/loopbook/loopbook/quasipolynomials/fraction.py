@@ -8,19 +8,22 @@ fraction, the coefficients whole numbers, the lowest power first. ``5*s + 2 + 3*
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Self, TypeVar
 
 import numpy as np
 import sympy
-from flint import fmpz_mpoly_ctx, fmpz_poly
+from sympy.polys.densearith import dup_exquo
+from sympy.polys.euclidtools import dup_gcd
+from sympy.polys.rings import PolyRing
 
 from loopbook.transfer import transfer_function
 from plainmath.expressions import s
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
@@ -34,6 +37,7 @@ Quasipolynomial = dict[Fraction, tuple[int, ...]]
 
 ZERO: Fraction = Fraction(0)
 ONE: Quasipolynomial = {ZERO: (1,)}
+PRIME = 2**61 - 1  # by which polynomials without a common factor are told apart quickly
 MOST_MULTIPLES = 60  # of a common base, up to which delays are powers of one symbol
 INFINITE = "is infinite: expected a transfer function"
 NOT_RATIONAL = "is not a rational function of s and dead times exp(-delay*s)"
@@ -48,32 +52,43 @@ def plus(one: Quasipolynomial, other: Quasipolynomial, factor: int = 1) -> Quasi
     """Return ``one + factor*other``."""
     total = dict(one)
     for delay, part in other.items():
-        total[delay] = _coefficients(_polynomial(total.get(delay, ())) + factor * _polynomial(part))
-    return {delay: part for delay, part in total.items() if part}
+        mine = total.get(delay, ())
+        longer = [*mine, *[0] * (len(part) - len(mine))]
+        for k, c in enumerate(part):
+            longer[k] += factor * c
+        if row := _trimmed(longer):
+            total[delay] = row
+        else:
+            total.pop(delay, None)
+    return total
 
 
 def times(one: Quasipolynomial, other: Quasipolynomial) -> Quasipolynomial:
     """Return ``one*other``."""
     if ONE in (one, other):
         return other if one == ONE else one
-    total: Quasipolynomial = {}
+    products: dict[Fraction, list[int]] = {}
     for delay, p in one.items():
         for later, q in other.items():
-            total = plus(total, {delay + later: _coefficients(_polynomial(p) * _polynomial(q))})
-    return total
+            total = products.setdefault(delay + later if delay and later else delay or later, [])
+            total += [0] * (len(p) + len(q) - 1 - len(total))
+            for i, a in enumerate(p):
+                if a:
+                    for j, b in enumerate(q, i):
+                        total[j] += a * b
+    return {delay: part for delay, total in products.items() if (part := _trimmed(total))}
+
+
+def _trimmed(coefficients: list[int]) -> tuple[int, ...]:
+    """Without zeros for the highest powers."""
+    while coefficients and not coefficients[-1]:
+        coefficients.pop()
+    return tuple(coefficients)
 
 
 def earlier(parts: Quasipolynomial, by: Fraction) -> Quasipolynomial:
     """Return a quasipolynomial with all dead times shorter."""
     return {delay - by: part for delay, part in parts.items()} if by else parts
-
-
-def _polynomial(part: Iterable[int]) -> fmpz_poly:
-    return fmpz_poly([*part])
-
-
-def _coefficients(polynomial: fmpz_poly) -> tuple[int, ...]:
-    return tuple(map(int, polynomial.coeffs()))
 
 
 def taylor_coefficient(parts: Quasipolynomial, k: int) -> Fraction:
@@ -122,15 +137,43 @@ def _ordered(above: Quasipolynomial, below: Quasipolynomial) -> tuple[Quasipolyn
     return dict(sorted(above.items())), dict(sorted(below.items()))
 
 
-def _common(*sums: Quasipolynomial) -> fmpz_poly:
-    """The polynomial that all parts of quasipolynomials have in common."""
-    return functools.reduce(fmpz_poly.gcd, (_polynomial(part) for parts in sums for part in parts.values()))
+def _common(*sums: Quasipolynomial) -> list:
+    """The polynomial that all parts of quasipolynomials have in common, the highest power first."""
+    parts = [[*map(sympy.ZZ, reversed(part))] for parts in sums for part in parts.values()]
+    if min(map(len, parts)) == 1 or _surely_coprime(parts):
+        return [math.gcd(*(int(c) for part in parts for c in part))]
+    return functools.reduce(lambda f, g: dup_gcd(f, g, sympy.ZZ), parts)
 
 
-def _divided(parts: Quasipolynomial, common: fmpz_poly) -> Quasipolynomial:
-    if common.is_one():
+def _divided(parts: Quasipolynomial, common: list) -> Quasipolynomial:
+    if common == [1]:
         return parts
-    return {delay: _coefficients(_polynomial(part) // common) for delay, part in parts.items()}
+    return {
+        delay: tuple(int(c) for c in reversed(dup_exquo([*map(sympy.ZZ, reversed(part))], common, sympy.ZZ)))
+        for delay, part in parts.items()
+    }
+
+
+def _surely_coprime(parts: list[list[int]]) -> bool:
+    """Whether polynomials, highest power first, have no common factor, as seen modulo a prime."""
+    if any(part[0] % PRIME == 0 for part in parts):
+        return False
+    # a common factor of all is one of the first and of any combination of the others
+    length = max(map(len, parts[1:]))
+    mixed = [0] * length
+    for number, part in enumerate(parts[1:], 1):
+        for k, c in enumerate(part, length - len(part)):
+            mixed[k] += (7919 * number * number + 1) * c
+    first, mixed = ([c % PRIME for c in row] for row in (parts[0], mixed))
+    while any(mixed):  # Euclid's algorithm
+        while not mixed[0]:
+            mixed.pop(0)
+        inverse = pow(mixed[0], -1, PRIME)
+        while len(first) >= len(mixed):
+            factor = first[0] * inverse
+            first = [(a - factor * b) % PRIME for a, b in itertools.zip_longest(first, mixed, fillvalue=0)][1:]
+        first, mixed = mixed, first
+    return len(first) == 1
 
 
 def common_polynomial(parts: Quasipolynomial) -> tuple[tuple[int, ...], Quasipolynomial]:
@@ -140,7 +183,7 @@ def common_polynomial(parts: Quasipolynomial) -> tuple[tuple[int, ...], Quasipol
     ((1, 1), {Fraction(0, 1): (0, 2), Fraction(1, 1): (1,)})
     """
     common = _common(parts)
-    return _coefficients(common), _divided(parts, common)
+    return tuple(map(int, reversed(common))), _divided(parts, common)
 
 
 def _without_common_quasipolynomial(
@@ -148,19 +191,19 @@ def _without_common_quasipolynomial(
 ) -> tuple[Quasipolynomial, Quasipolynomial]:
     """Without common factors that contain dead times, these being powers of a few symbols."""
     powers, units = _as_powers({*above, *below})
-    ring = fmpz_mpoly_ctx.get(("s", *(f"z{k}" for k in range(len(units)))))
+    ring = PolyRing(sympy.symbols(f"s z:{len(units)}"), sympy.ZZ)
     f, g = (
-        ring.from_dict({(k, *powers[d]): c for d, part in side.items() for k, c in enumerate(part) if c})
+        ring.from_dict({(k, *powers[d]): sympy.ZZ(c) for d, part in side.items() for k, c in enumerate(part) if c})
         for side in (above, below)
     )
-    common = f.gcd(g)
-    if common.is_constant():
+    common, f, g = f.cofactors(g)
+    if common.is_ground:
         return above, below
     sides = []
-    for polynomial in (f // common, g // common):
+    for polynomial in (f, g):
         side: Quasipolynomial = {}
-        for (k, *exponents), c in polynomial.to_dict().items():
-            delay = sum((int(n) * unit for n, unit in zip(exponents, units, strict=True)), ZERO)
+        for (k, *exponents), c in polynomial.terms():
+            delay = sum((n * unit for n, unit in zip(exponents, units, strict=True)), ZERO)
             side = plus(side, {delay: (*[0] * k, int(c))})
         sides.append(side)
     base = min(sides[1])
@@ -410,7 +453,11 @@ def read(value: object) -> DelayFraction:
     """
     if isinstance(value, DelayFraction):
         return value
-    H = transfer_function(value)
+    return _of_expression(transfer_function(value))
+
+
+@functools.lru_cache(maxsize=256)  # one process is read again for each of its controllers
+def _of_expression(H: sympy.Expr) -> DelayFraction:
     if letters := sorted(map(str, H.free_symbols - {s})):
         raise ValueError(f"give a number for {', '.join(letters)} in {H}")
     try:
@@ -463,8 +510,6 @@ def _read(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
 
 
 def _power(parts: Quasipolynomial, n: int) -> Quasipolynomial:
-    if len(parts) == 1:
-        return {n * delay: _coefficients(_polynomial(part) ** n) for delay, part in parts.items()}
     return functools.reduce(times, [parts] * n, ONE)
 
 

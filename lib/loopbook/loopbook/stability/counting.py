@@ -42,7 +42,7 @@ ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
 MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each quasipolynomial
 FEW_TERMS = 1  # the degree of expansions for many quasipolynomials
 DIGITS = 25  # from which a coefficient may be no fraction
-RATIO = 2.0  # of the frequencies at the ends of an interval, at first
+RATIO, MANY_RATIO = 1.5, 2.0  # of the frequencies at the ends of an interval, at first; of 50 quasipolynomials and more
 
 
 class StabilityLimitError(ValueError):
@@ -420,7 +420,7 @@ class Turns:
         """The numbers of roots in the right half-plane."""
         sums = self.sums
         one, points = np.ones(sums.count), np.arange(sums.count)
-        which, a, b = geometric(_lowest(sums), one, near, RATIO)
+        which, a, b = geometric(_lowest(sums), one, near, RATIO if sums.count < 50 else MANY_RATIO)
         if self.removable:
             start, turn = above_origin(sums, self.removable)
             self.phase += turn

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loopbook.stability.enclosures import Enclosure, divided, divided_about, enclosed, geometric, walk
-from loopbook.stability.loops import FEW
+from loopbook.stability.loops import DOUBTFUL, FEW
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -61,19 +61,8 @@ class NearZero(View):
     def __init__(self, loops: Loops, b: np.ndarray):
         super().__init__(loops, np.arange(loops.count), 0 * b, b)
         self.c, self.r = 0 * b, b
-        self.both = loops.near_zero(self.which, b)
-
-    @property
-    def A(self) -> Enclosure:
-        return self.both[0]
-
-    @property
-    def B(self) -> Enclosure:
-        return self.both[1]
-
-    @property
-    def early(self) -> Enclosure:
-        return self.both[0]
+        self.A, self.B = loops.near_zero(self.which, b)
+        self.early = self.A
 
     @functools.cached_property
     def C(self) -> Enclosure:
@@ -109,9 +98,6 @@ class SizeOne(Question):
         self.brackets = []
 
     def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
-        if isinstance(view, NearZero):  # `Loops.start` has taken care of that
-            self.crossing = np.zeros(len(view.which), dtype=bool)
-            return self.crossing, self.crossing
         A, B = view.early, view.B
         undecided = (B.least <= A.most) & (A.least <= B.most)
         self.crossing, noisy = np.zeros((2, len(view.which)), dtype=bool)
@@ -181,9 +167,6 @@ class Real(Question):
 
     def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
         which = view.which
-        if isinstance(view, NearZero):  # `Loops.start` has taken care of that
-            nothing = np.zeros(len(which), dtype=bool)
-            return nothing, nothing
         undecided = ~self.loops.is_real[which]
         undecided &= (self.highest[which] * view.early.most >= view.B.least) & (
             self.lowest[which] * view.early.least <= view.B.most
@@ -198,25 +181,15 @@ class Real(Question):
         away = np.where(middle.real < 0, abs(middle.imag), abs(middle)) > product.spread
         monotone = ~away & product.imag.is_monotone
         if len(candidates := some[monotone]):
-            self._solve(view, candidates)
+            points, a, b = (x[candidates] for x in (which, view.a, view.b))
+            ends = (self.loops.values(points, end, 0, view.precise) for end in (a, b))
+            self.solve(points, a, b, *((A[0] * B[0].conj()).imag for A, B in ends))
         left = ~away & ~monotone
         if not self.all_gains:
             left &= ~_misses(A, B, self.lowest[which[some]], self.highest[which[some]])
         undecided[some] = left
         noisy[some] = product.is_noisy | (abs(middle.imag) < 16 * product.noise)
         return undecided, noisy
-
-    def _solve(self, view, candidates):
-        """Find the crossings in intervals on which Im A conj(B) is monotone."""
-        points, a, b = (x[candidates] for x in (view.which, view.a, view.b))
-        if len(new := (~self.is_known(points, a, b)).nonzero()[0]) < len(points):
-            points, a, b = points[new], a[new], b[new]
-        if not len(new):
-            return
-        at_a, at_b = (
-            (A[0] * B[0].conj()).imag for A, B in (self.loops.values(points, end, 0, view.precise) for end in (a, b))
-        )
-        self.solve(points, a, b, at_a, at_b)
 
     def solve(self, points: np.ndarray, a: np.ndarray, b: np.ndarray, at_a: np.ndarray, at_b: np.ndarray) -> None:
         """Find the crossings in intervals with values of Im A conj(B) at the ends, if these have different signs."""
@@ -276,7 +249,8 @@ def solved(
     w = _solved(loops, which, a, b, function, at_a < at_b, w, False)
     A, B = (x[0] for x in loops.values(which, w))
     if loops.exact is not None and 0 < len(w) < FEW:
-        again = np.flatnonzero(loops.doubtful(which, w, A, B))
+        noise = loops.noise(which, w)
+        again = np.flatnonzero((noise[0] > DOUBTFUL * abs(A)) | (noise[1] > DOUBTFUL * abs(B)))
         if len(again):
             some = which[again]
             w[again] = _solved(loops, some, a[again], b[again], function, (at_a < at_b)[again], w[again], True)
@@ -291,13 +265,13 @@ def _solved(loops, which, a, b, function, rising, w, precise):
     for _ in range(100):
         if not len(moving):
             break
-        value, slope, bend = function(*loops.values(which[moving], w[moving], 2, precise))
+        value, slope, curvature = function(*loops.values(which[moving], w[moving], 2, precise))
         before = (value < 0) == rising[moving]
         a[moving] = np.where(before, w[moving], a[moving])
         b[moving] = np.where(before, b[moving], w[moving])
         with np.errstate(divide="ignore", invalid="ignore"):
             step = value / slope  # no squares of values, which for a high order would be smaller than all numbers
-            better = w[moving] - 2 * step / (2 - step * (bend / slope))
+            better = w[moving] - 2 * step / (2 - step * (curvature / slope))
         outside = ~((better >= a[moving]) & (better <= b[moving]))
         better[outside] = ((a + b) / 2)[moving][outside]
         change = abs(better - w[moving])
@@ -351,20 +325,10 @@ def asked(
     return walk(judge, which, a, b, names, loops.unit, loops.exact is not None, divide, most)
 
 
-def below(loops: Loops, questions: list[Question]) -> np.ndarray:
-    """A frequency up to which all questions are decided from zero on."""
-    start = loops.start.copy()
-    for _ in range(300):
-        view = NearZero(loops, start)
-        undecided = np.zeros(loops.count, dtype=bool)
-        for question in questions:
-            undecided |= question.judge(view)[0]
-        if not undecided.any():
-            for question in questions:
-                question.take(view, ~undecided)
-            return start
-        start = np.where(undecided, start / 4, start)
-    raise ValueError(f"{questions[0].name} is not decided at the frequency zero")
+def wider(loops: Loops, done: np.ndarray) -> np.ndarray:
+    """The end of the next window of frequency: four times as far, or so far that dead times turn by 20 rad."""
+    with np.errstate(divide="ignore"):
+        return np.maximum(4 * done, done + np.where(loops.longest > 0, 20 / loops.longest, 0))
 
 
 def steps(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

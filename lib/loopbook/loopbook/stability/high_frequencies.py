@@ -40,7 +40,7 @@ class HighFrequencies:
         self.loops = loops
         A, B = loops.exact[:2]
         delays = sorted({Fraction(0), *A.parts, *B.parts})
-        rows = [[exact.coefficients(delay)[-1] for exact in (A, B)] for delay in delays]
+        rows = [[_highest(exact, delay) for exact in (A, B)] for delay in delays]
         self._rows = [row for row in rows if row is rows[0] or any(row)]
         self._a, self._b = np.array(self._rows, dtype=float).T
         self.vanishes, self.is_open = not self._a.any(), len(self._rows) > 2
@@ -100,14 +100,14 @@ class HighFrequencies:
         distance = min(self._distance(k) for k in (low, high))
         if (self._b[0] + low * self._a[0]) * (self._b[0] + high * self._a[0]) < 0:
             distance = 0.0
-        end = _better(end, self._prevails_beyond(distance, high, 1.0))
+        end = np.fmin(end, self._prevails_beyond(distance, high, 1.0))
         if self._parts is None:
             return end
         A, B = self._parts
         low, high = Fraction(low * (1 + ENOUGH)), Fraction(high * (1 - ENOUGH))
         # abs(B0 + k A0)**2 - abs(B1 + k A1)**2, a parabola in k, is positive where these three are (Bernstein)
         conditions = [_difference(B + k * A, B + m * A) for k, m in ((low, low), (low, high), (high, high))]
-        return _better(end, np.max([_positive_beyond(row) for row in conditions]))
+        return np.fmin(end, np.max([_positive_beyond(row) for row in conditions]))
 
     def _distance(self, gain: float) -> float:
         """How far 0 is, at least, from b + k a; between two gains the least distance is at one of them.
@@ -174,21 +174,21 @@ class HighFrequencies:
             return end
         c = self._a + self._b
         least = self._least((most**2, c), (-1.0, self._b)) / (most * abs(c).sum() + abs(self._b).sum())
-        end = _better(end, self._prevails_beyond(least, most, most + 1))
+        end = np.fmin(end, self._prevails_beyond(least, most, most + 1))
         if self._parts is None:
             return end
         A, B = self._parts
-        return _better(end, _sum_positive_beyond((Fraction(most) ** 2, A + B), (-1, B)))
+        return np.fmin(end, _sum_positive_beyond((Fraction(most) ** 2, A + B), (-1, B)))
+
+
+def _highest(exact, delay):
+    part = exact.parts.get(delay, ())
+    return Fraction(part[-1], exact.divisor) if len(part) > exact.order else Fraction(0)
 
 
 def _extremes(part) -> list[float]:
     """A sum with one dead time where its phase is 0 and where it is a half turn."""
     return [float(part.sum()), float(2 * part[0] - part.sum())]
-
-
-def _better(one: float, other: float) -> float:
-    """The lower of two frequencies that may be unknown."""
-    return float(np.fmin(one, other))
 
 
 # ---- polynomials in fractions, of parts [undelayed or delayed, power]

@@ -9,14 +9,25 @@ import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.confirmation import confirm, confirm_gains
-from loopbook.stability.counting import count_closed, fraction_sums, open_loop
-from loopbook.stability.crossings import Real, asked, steps
+from loopbook.stability.counting import (
+    ON_LIMIT,
+    count_closed,
+    fraction_sums,
+    is_closed_loop_stable,
+    of_one_order,
+    open_loop,
+)
+from loopbook.stability.crossings import Real, asked, steps, wider
+from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import Loops
+from plainmath.expressions import s
 from plainmath.validation import positive, positive_numbers
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from loopbook.quasipolynomials import DelayFraction
 
 LARGEST = 1e100
 FURTHEST = 1e15  # times the frequency of the fastest pole, beyond which nothing is looked for
@@ -43,8 +54,7 @@ def ultimate(process: object) -> tuple[float, float]:
     (1.5708, 4.0)
     """
     L = open_loop(process)
-    loops = Loops(*fraction_sums(L), L)
-    gain, frequency = (float(found[0]) for found in _stable_range(loops))
+    loops, gain, frequency = _ultimate(L)
     if math.isnan(gain):
         opposite = -L
         other = _stable_range(Loops(*fraction_sums(opposite), opposite))[0][0]
@@ -52,8 +62,16 @@ def ultimate(process: object) -> tuple[float, float]:
         least = float(_endless_gains(loops, HighFrequencies(loops, pivot=0.0))[0])
         below = f" below {least:.6g}, with which the gain at infinite frequency is 1," if least < math.inf else ""
         raise ValueError(f"no positive gain{below} makes the closed loop of {L.expr} stable{hint}")
-    confirm(loops, {"gain_margin": gain, "omega_180": frequency}, itself=False)
     return gain, 2 * math.pi / frequency if frequency else math.inf
+
+
+def _ultimate(L: DelayFraction) -> tuple[Loops, float, float]:
+    """A loop, its ultimate gain and the frequency of that; nan without one."""
+    loops = Loops(*fraction_sums(L), L)
+    gain, frequency = (float(found[0]) for found in _stable_range(loops))
+    if not math.isnan(gain):
+        confirm(loops, {"gain_margin": gain, "omega_180": frequency}, itself=False)
+    return loops, gain, frequency
 
 
 def boundary_pi(process: object, Ti: ArrayLike) -> np.ndarray | float:
@@ -110,17 +128,21 @@ def boundary_pid(process: object, Ti: ArrayLike, Td: ArrayLike, Tf: ArrayLike = 
     A, B = fraction_sums(L)
     i, d, f = 1 / Ti.ravel(), Td.ravel(), np.where(Td > 0, Tf, 0).ravel()
     found = np.empty(Ti.size)
-    kinds = (d > 0) + 1 * (f > 0)  # PI, and PID without and with filter, are loops of different order
-    for kind in set(kinds.tolist()):
-        points = kinds == kind
-        above, below = (
-            part * of_pid for part, of_pid in zip((A, B), _pid(i[points], d[points], f[points]), strict=True)
-        )
-        order = np.flatnonzero(below.coefficients.any(axis=(0, 2)))[-1]
-        if above.coefficients[:, order + 1 :].any():
-            raise ValueError(f"PID control of {L.expr} without filter is improper: expected a lag Tf that is positive")
-        above, below = (Quasipolynomials(x.coefficients[:, : order + 1], x.delays) for x in (above, below))
-        found[points] = _confirmed(Loops(above, below))
+    above, below = (part * of_pid for part, of_pid in zip((A, B), _pid(i, d, f), strict=True))
+    try:
+        groups = list(of_one_order(above, below))  # PI, and PID without and with filter
+    except ValueError:
+        raise ValueError(
+            f"PID control of {L.expr} without filter is improper: expected a lag Tf that is positive"
+        ) from None
+    for points, above, below in groups:
+        try:
+            loops = Loops(above, below)
+            found[points], frequencies = _stable_range(loops)
+            confirm_gains(loops, found[points], frequencies)
+        except UndecidedError:  # one by one there are more digits
+            times = zip(Ti.ravel()[points], d[points], f[points], strict=True)
+            found[points] = [_ultimate(L * (1 + 1 / (t * s) + td * s / (tf * s + 1)))[1] for t, td, tf in times]
     found = found.reshape(Ti.shape)
     return found if found.ndim else float(found)
 
@@ -132,13 +154,6 @@ def _pid(i, d, f):
         Quasipolynomials(np.array([[i, 1 + i * f, f + d]]), nothing),
         Quasipolynomials(np.array([[0 * i, 1 + 0 * i, f]]), nothing),
     )
-
-
-def _confirmed(loops: Loops) -> np.ndarray:
-    """The upper ends of the lowest ranges of gains for which loops are stable."""
-    gains, frequencies = _stable_range(loops)
-    confirm_gains(loops, gains, frequencies)
-    return gains
 
 
 def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
@@ -180,7 +195,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
             unlimited = next_gain[points] >= LARGEST
             middle = np.where(unlimited, 2 * lower[points] + 1, (lower[points] + next_gain[points]) / 2)
             # between two gains that bring poles to the axis their number does not change: one gain stands for all
-            good = count_closed(loops.A[points], loops.B[points], middle) == 0
+            good = _counted(loops, points, lower[points], middle) == 0
             stable = points[good]
             found[stable] = np.where(unlimited[good], math.inf, next_gain[stable])
             place[stable] = np.where(unlimited[good], math.inf, next_place[stable] * unit[stable])
@@ -188,11 +203,10 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
             searched[points[good | (next_gain[points] >= np.minimum(endless[points], LARGEST))]] = False
         if not searched.any():
             return found, place
-        longest = loops.longest
-        far_out = np.flatnonzero(searched & ((done * longest > MOST_TURNS) | (done > FURTHEST)))
+        far_out = np.flatnonzero(searched & ((done * loops.longest > MOST_TURNS) | (done > FURTHEST)))
         if len(far_out):
             least = np.maximum(lower, _least_gain(loops, done))[far_out]
-            still = count_closed(loops.A[far_out], loops.B[far_out], (lower[far_out] + least) / 2) == 0
+            still = _counted(loops, far_out, lower[far_out], (lower[far_out] + least) / 2) == 0
             if still.any():
                 k = far_out[still][0]
                 raise ValueError(
@@ -200,9 +214,22 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
                     f"stable, and what is beyond the frequency {done[k] * unit[k]:.6g} is not decided"
                 )
             searched[far_out] = False
-        with np.errstate(divide="ignore"):
-            window = np.maximum(4 * done, done + np.where(longest > 0, 20 / longest, 0))
-        end = np.where(searched, np.fmin(need, window), done)
+        end = np.where(searched, np.fmin(need, wider(loops, done)), done)
+
+
+def _counted(loops, points, lower, middle):
+    """The numbers of unstable poles with gains between two that bring poles to the axis, the lower one and another."""
+    counts = np.full(len(points), ON_LIMIT)
+    for share in (1.0, 0.6, 0.9):  # all gains between those two have the same number, but it may be hard to tell
+        left = np.flatnonzero(counts == ON_LIMIT)
+        gains = lower[left] + share * (middle - lower)[left]
+        counts[left] = count_closed(loops.A[points[left]], loops.B[points[left]], gains)
+        if (counts != ON_LIMIT).all():
+            return counts
+    if loops.fraction is not None:
+        return np.array([0 if is_closed_loop_stable(float(middle[0]) * loops.fraction) else math.inf])
+    gain = middle[np.flatnonzero(counts == ON_LIMIT)[0]]
+    raise UndecidedError(f"the number of unstable poles with the gain {gain:.6g}", 0.0, math.inf)
 
 
 def _complete_beyond(loops, far, lower, gain, is_endless, is_largest):

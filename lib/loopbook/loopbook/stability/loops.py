@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials, powers_of
+from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials, expanded, turns
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
 from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, origin
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from loopbook.quasipolynomials import DelayFraction
 
 DOUBTFUL = 1e-12  # the share of rounding in a value above which crossings and peaks are computed with more digits
@@ -79,27 +81,22 @@ class Loops:
             return tuple(each.taylor(w, degree) for each in self.exact[:2])
         if self.count > 1:
             return self.A.taylor(which, w, degree), self.B.taylor(which, w, degree)
-        matrices, late, parts = self._stacked
-        values = matrices[:, : degree + 1] @ powers_of(w, self.B.order + 1)
-        for part, delay in late:
-            values[part] *= np.exp(-1j * (w * delay))
-        A, B = values[:parts], values[parts:]
-        return A[0] if parts == 1 else A.sum(axis=0), B[0] if len(B) == 1 else B.sum(axis=0)
+        matrices, delays, parts = self._stacked
+        values = expanded(matrices, delays, w, degree)
+        return values[:parts].sum(axis=0), values[parts:].sum(axis=0)
 
     @functools.cached_property
     def _stacked(self):
         """What the expansions of A and B take, in one piece."""
-        matrices = np.concatenate([self.A.turned, self.B.turned])
-        delays = [*self.A.delays[:, 0].tolist(), *self.B.delays[:, 0].tolist()]
-        return matrices, [(k, delay) for k, delay in enumerate(delays) if delay], len(self.A.delays)
+        delays = np.concatenate([self.A.delays[:, 0], self.B.delays[:, 0]])
+        return np.concatenate([self.A.turned, self.B.turned]), delays, len(self.A.delays)
 
-    def doubtful(self, which: np.ndarray, w: np.ndarray, *values: np.ndarray) -> np.ndarray:
-        """Where rounding has a share in A or B, whose values are given, or in A + B if one value is."""
-        doubt = False
-        for sums, value in zip((self.A, self.B) if len(values) == 2 else (self.C,), values, strict=True):
-            noise = EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
-            doubt = doubt | (noise > DOUBTFUL * abs(value))
-        return doubt
+    def noise(self, which: np.ndarray, w: np.ndarray) -> list[np.ndarray]:
+        """Bounds of the rounding in the values of A and B."""
+        return [
+            EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
+            for sums in (self.A, self.B)
+        ]
 
     # ---- at zero
 
@@ -116,8 +113,7 @@ class Loops:
                 some = removed == n
                 a[:-n, some], b[:-n, some] = a[n:, some], b[n:, some]
                 a[-n:, some] = b[-n:, some] = 0
-        turns = 1j ** np.arange(degree + 1)[:, None]
-        return a * turns, b * turns, more_a, more_b, removed
+        return a * turns(degree + 1), b * turns(degree + 1), more_a, more_b, removed
 
     def near_zero(self, which: np.ndarray, r: np.ndarray) -> tuple[Enclosure, Enclosure]:
         """Enclosures of A and B from -r to r, without the zeros at zero that both have."""
@@ -138,77 +134,75 @@ class Loops:
     @functools.cached_property
     def start(self) -> np.ndarray:
         """A frequency up to which L turns off the real axis and the size 1, if it begins there, but never returns."""
-        a, b, more_a, more_b, removed = self.at_zero
-        count, points = len(a), self.count
+        a, b, more_a, more_b, _ = self.at_zero
         size_a, size_b = abs(a), abs(b)
-        # Im A conj(B), an odd function of the frequency, and abs(B)**2 - abs(A)**2, an even one, side by side
-        series = np.concatenate(
-            [_conjugate_product(a, b).imag, (_conjugate_product(b, b) - _conjugate_product(a, a)).real], axis=1
+        of_a, of_b = (size_a, more_a), (size_b, more_b)
+        odd = self._without_rounding(_conjugate_product(a, b).imag, _conjugate_product(size_a, size_b), 1)
+        self.is_real = ~odd[: len(a)].any(axis=0)
+        even, sizes = (
+            _conjugate_product(y, y) + sign * _conjugate_product(x, x)
+            for x, y, sign in ((a, b, -1), (size_a, size_b, 1))
         )
-        sizes = np.concatenate(
-            [
-                _conjugate_product(size_a, size_b),
-                _conjugate_product(size_b, size_b) + _conjugate_product(size_a, size_a),
-            ],
-            axis=1,
+        even = self._without_rounding(even.real, sizes, 0)
+        return np.minimum(
+            self._lowest_rules(odd, _conjugate_product(size_a, size_b), [(of_a, of_b)]),
+            self._lowest_rules(even, sizes, [(of_a, of_a), (of_b, of_b)]),
         )
-        series[abs(series) <= 1e-12 * sizes] = 0
-        series[::2, :points], series[1::2, points:] = 0, 0
-        if self.exact is not None:
-            for parity in (1, 0):
-                mine = slice(1 - parity, 2 - parity)
-                self._exactly(series[:, mine], sizes[:, mine], parity)
-        some, sides = series[:count].any(axis=0), np.arange(2 * points)
-        lowest = np.argmax(series[:count] != 0, axis=0)
-        self.is_real = ~some[:points]
-        # where each of the next powers is still a quarter of the lowest one; then in halves, until all others together,
-        # with a bound of what the series leaves out, are half of it: up to there the lowest one decides the sign
-        known, series = abs(series[lowest, sides]), abs(series)
-        gaps = np.arange(len(series))[:, None] - lowest
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratios = (known / (4 * series)) ** (1 / np.maximum(gaps, 1))
-        ratios[gaps <= 0] = math.inf
-        start = np.tile(0.25 / np.maximum(self.longest, 1.0), 2)
-        start = np.where(some, np.fmin(start, ratios[:count].min(axis=0)), start)
-        series[lowest, sides] = 0
-        series[count:] = sizes[count:]
-        degrees = np.arange(count)[:, None]
-        for _ in range(400):
-            others = (series * start**gaps).sum(axis=0)
-            wider = np.maximum(start[:points], start[points:])
-            sum_a, sum_b = ((x * wider**degrees).sum(axis=0) for x in (size_a, size_b))
-            for half, (first, second) in enumerate(
-                (((sum_a, more_a), (sum_b, more_b)), ((sum_a, more_a), (sum_a, more_a)))
-            ):
-                mine = slice(half * points, (half + 1) * points)
-                beyond = start[mine] ** (count - removed)
-                tail = first[0] * second[1] + second[0] * first[1] + first[1] * second[1] * beyond
-                if half:
-                    tail = tail + 2 * sum_b * more_b + more_b**2 * beyond
-                others[mine] += tail * beyond * start[mine] ** (-1.0 * lowest[mine])
-            high = some & (others > known / 2)
-            if not high.any():
-                break
-            start = np.where(high, start / 2, start)
-        return np.minimum(start[:points], start[points:])
 
-    def _exactly(self, series, size, parity):
-        """The lowest term that is not zero, which rounding may hide, as it is."""
-        removed, (A, B) = int(self.at_zero[4][0]), self.exact[:2]
-        product = (
-            self._odd if parity else plus(times(B.parts, _mirrored(B.parts)), times(A.parts, _mirrored(A.parts)), -1)
-        )
-        for n in range(parity, len(self.at_zero[0]), 2):
-            if abs(series[n, 0]) > 1e-8 * size[n, 0]:
-                return
-            if not size[n, 0]:
+    def _without_rounding(self, series, sizes, parity):
+        """A power series in w, Im A conj(B) with odd powers or ``abs(B)**2 - abs(A)**2`` with even ones.
+
+        Of a single loop the lowest term that is not zero, which rounding may hide, is exact.
+        """
+        series[abs(series) <= 1e-12 * sizes] = 0
+        series[1 - parity :: 2] = 0
+        if self.exact is None:
+            return series
+        count, removed, (A, B) = len(self.at_zero[0]), int(self.at_zero[4][0]), self.exact[:2]
+        product = None
+        for n in range(parity, count, 2):
+            if abs(series[n, 0]) > 1e-8 * sizes[n, 0]:
+                break
+            if not sizes[n, 0]:
                 continue
+            product = product or (self._odd if parity else plus(_square(B.parts), _square(A.parts), -1))
             # of powers of s: those of w have other signs, and 2j Im A conj(B) is the odd one
             value = taylor_coefficient(product, n + 2 * removed) * (-1) ** (n // 2 + removed) / (1 + parity)
             value *= Fraction(A.unit) ** (n + 2 * removed - 2 * A.order) / A.divisor**2
             series[n, 0] = float(value)
             if value:
-                return
+                break
+        return series
+
+    def _lowest_rules(self, series, sizes, pairs):
+        """A frequency up to which the lowest term of a power series in w is twice as large as all others together.
+
+        The series ends where those of A and B do, whose products it has; what they leave out is bounded.
+        """
+        a, *_, removed = self.at_zero
+        count, points = len(a), np.arange(self.count)
+        some, lowest = series[:count].any(axis=0), np.argmax(series[:count] != 0, axis=0)
+        known, others = abs(series[lowest, points]), abs(series)
+        others[lowest, points], others[count:] = 0, sizes[count:]
+        gaps = np.maximum(np.arange(len(series))[:, None] - lowest, 0)
+        # where each of the next powers is still a quarter of the lowest one; then in halves
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = (known / (4 * others[:count])) ** (1 / np.maximum(gaps[:count], 1))
+        start = 0.25 / np.maximum(self.longest, 1.0)
+        start = np.where(some, np.fmin(start, np.where(gaps[:count], ratios, math.inf).min(axis=0)), start)
+        degrees = np.arange(count)[:, None]
+        for _ in range(400):
+            powers = start**degrees
+            beyond = start ** (count - removed)
+            rest = sum(
+                (x * powers).sum(axis=0) * more_y + (y * powers).sum(axis=0) * more_x + more_x * more_y * beyond
+                for (x, more_x), (y, more_y) in pairs
+            )
+            high = some & ((others * start**gaps).sum(axis=0) + rest * start ** (count - removed - lowest) > known / 2)
+            if not high.any():
+                break
+            start = np.where(high, start / 2, start)
+        return start
 
     @functools.cached_property
     def _odd(self) -> Quasipolynomial:
@@ -252,8 +246,17 @@ class Loops:
         if len(self.A.coefficients) != 1 or len(self.B.coefficients) != 1:
             return None
         if self.exact is None:
-            return [square(x.coefficients[0]) for x in (self.A, self.B)]
-        return [square(each.coefficients(min(each.parts))[:, None]).astype(float) for each in self.exact[:2]]
+            return [np.array(square(x.coefficients[0])) for x in (self.A, self.B)]
+        return [self._exact_square(each) for each in self.exact[:2]]
+
+    def _exact_square(self, exact: Exact) -> np.ndarray:
+        """The same of a sum with one dead time at most, rounded at the end only."""
+        (part,) = exact.parts.values()
+        row = np.zeros((self.B.order + 1, 1))
+        for n, c in enumerate(square(part)):
+            shift = 2 * (n - self.B.order) * (math.frexp(exact.unit)[1] - 1)  # the unit is a power of two
+            row[n] = (c << max(shift, 0)) / (exact.divisor**2 << max(-shift, 0))
+        return row
 
     def beyond_limit(self) -> np.ndarray:
         """A frequency beyond which abs(L) is not above what it is at infinite frequency, with one dead time; or nan.
@@ -304,18 +307,18 @@ def _mirrored(parts: Quasipolynomial) -> Quasipolynomial:
     return {-delay: tuple((-1) ** n * c for n, c in enumerate(part)) for delay, part in parts.items()}
 
 
-def square(part: np.ndarray) -> np.ndarray:
-    """The squares of the sizes of polynomials [power, point] on the imaginary axis, in powers of ``w*w``."""
+def _square(parts: Quasipolynomial) -> Quasipolynomial:
+    """The square of the size of a quasipolynomial on the imaginary axis."""
+    return times(parts, _mirrored(parts))
+
+
+def square(part: Sequence) -> list:
+    """The square of a polynomial's size on the imaginary axis, in powers of ``w*w``; coefficients may be arrays."""
     order = len(part) - 1
-    return np.array(
-        [
-            sum(
-                (-1) ** abs(n - i) * part[i] * part[2 * n - i]
-                for i in range(max(0, 2 * n - order), min(2 * n, order) + 1)
-            )
-            for n in range(order + 1)
-        ]
-    )
+    return [
+        sum((-1) ** abs(n - i) * part[i] * part[2 * n - i] for i in range(max(0, 2 * n - order), min(2 * n, order) + 1))
+        for n in range(order + 1)
+    ]
 
 
 def positive_beyond(rows: np.ndarray) -> np.ndarray:

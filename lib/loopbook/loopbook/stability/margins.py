@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from loopbook.quasipolynomials.fraction import common_polynomial, times
 from loopbook.stability.confirmation import confirm
 from loopbook.stability.counting import (
     cancels,
@@ -18,13 +19,15 @@ from loopbook.stability.counting import (
     is_stable,
     open_loop,
 )
-from loopbook.stability.crossings import Real, SizeOne, asked, below, phase_left, steps
-from loopbook.stability.enclosures import MOST_INTERVALS
+from loopbook.stability.crossings import Real, SizeOne, asked, phase_left, steps, wider
+from loopbook.stability.enclosures import MOST_INTERVALS, divided
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import ENOUGH, Loops
-from loopbook.stability.peaks import Peak, to_the_top
+from loopbook.stability.polynomials import unstable_roots_of
+from loopbook.stability.sensitivity import Peak, to_the_top
 
 MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
+NEAR_PEAK = np.array([-36.0, -12.0, -4.0, -1.0, 1.0, 4.0, 12.0, 36.0]) / 16  # ends of intervals, in widths of it
 FURTHEST = 1e15  # times the frequency of the fastest pole, beyond which nothing is looked for
 
 
@@ -118,7 +121,7 @@ def margins(loop: object) -> Margins:
 def _read(loop: object) -> Loops | None:
     """A loop in numbers; None for none."""
     L = open_loop(loop, zero=True)
-    if cancels(loop) and not is_stable(loop):
+    if cancels(loop) and not _cancels_stable(loop):
         raise ValueError(f"{loop} is not stable: controller and process cancel an unstable pole; it has no margin")
     if L.numerator:
         characteristic(L)  # raises for what is not a loop
@@ -126,6 +129,16 @@ def _read(loop: object) -> Loops | None:
     if not is_stable(L):
         raise ValueError(f"{L.expr} is not stable: it has no margin")
     return None
+
+
+def _cancels_stable(loop: object) -> bool:
+    """Whether the poles that controller and process cancel are in the left half-plane."""
+    P, C, L = loop.process_fraction, loop.controller_fraction, loop.open_fraction
+    above, below = times(P.numerator, C.numerator), times(P.denominator, C.denominator)
+    common, rest = common_polynomial(dict(enumerate((*below.values(), *above.values()))))
+    if list(rest.values())[: len(below)] == list(L.denominator.values()):
+        return unstable_roots_of(common) == 0
+    return is_stable(loop)  # what is cancelled has dead times
 
 
 @contextlib.contextmanager
@@ -180,7 +193,7 @@ class Survey:
             if questions == [self.size] and self.far.exceeds_one:
                 return
             raise ValueError("whether the loop's gain at ever higher frequencies stays away from 1 is not decided")
-        done = below(loops, questions)
+        done = self.peak.below() if self.peak else loops.start
         longest = float(loops.longest[0])
         end, left, most = self._scout(float(done[0]), questions), questions, MOST_INTERVALS
         while True:
@@ -193,8 +206,7 @@ class Survey:
             furthest = max(math.inf if math.isnan(each) else each for each in ends.values())
             if (furthest == math.inf and (end * longest > MOST_TURNS or end > FURTHEST)) or end > 1e3 * FURTHEST:
                 raise ValueError(self._undecided(left, end))
-            window = max(4 * end, end + 20 / longest if longest else 0)
-            end = min(furthest, window)
+            end = min(furthest, float(wider(loops, done)[0]))
             if (end - float(done[0])) * longest > most:
                 raise ValueError(self._undecided(left, float(done[0])))
 
@@ -218,7 +230,7 @@ class Survey:
         loops = self.loops
         end = float(loops.beyond(np.full(1, 2.0))[0])
         end = max(end if end < 64 else 4.0, 4 * start)
-        w = np.geomspace(start, 2 * end, 80)
+        w = start * (2 * end / start) ** (np.arange(80) / 79)
         which = np.zeros(len(w), dtype=int)
         A, B = (x[0] for x in loops.values(which, w))
         if self.peak:
@@ -236,17 +248,16 @@ class Survey:
         return max([end, *(each for each in ends if each < 8 * end)])
 
     def _intervals(self, start, end):
-        """Geometric steps, and the peak in the middle of one of them."""
-        which, a, b = steps(np.full(1, start), np.full(1, end))
+        """Geometric steps, divided where dead times turn the phase much, and the peak in the middle of one of them."""
+        _, a, b = steps(np.full(1, start), np.full(1, end))
+        edges = np.append(a, b[-1])
         if self.peak and start < self.peak.place[0] < end:
             p, width = float(self.peak.place[0]), self.peak.width
-            edges = np.append(a, b[-1])
-            near = p + width * np.array([-9.0, -3.0, -1.0, 1.0, 3.0, 9.0]) / 4
-            inner = edges[1:-1][abs(edges[1:-1] - p) > width / 4]
-            near = near[(near > start) & (near < end)]
-            edges = np.unique(np.concatenate([edges[[0, -1]], inner, near]))
-            return np.zeros(len(edges) - 1, dtype=int), edges[:-1], edges[1:]
-        return which, a, b
+            near = p + width * NEAR_PEAK
+            inner = edges[1:-1][~(abs(edges[1:-1] - p) < width / 16)]
+            edges = np.sort(np.concatenate([edges[[0, -1]], inner, near[(near > start) & (near < end)]]))
+        a, b = edges[:-1], edges[1:]
+        return divided(np.zeros(len(a), dtype=int), a, b, np.ceil((b - a) * self.loops.longest).clip(1, 64).astype(int))
 
     # ---- what was found
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+import math
+from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING
 
 import sympy
@@ -26,22 +27,32 @@ def unstable_roots_of(coefficients: Sequence[int]) -> int | None:
     (None, 1, 0)
     """
     n = len(coefficients) - 1
-    # one has the powers n, n - 2 ..., the other the rest
+    # one has the powers n, n - 2 ..., the other the rest, the highest power first
     one, other = (
-        sympy.Poly(
-            [c * (-1) ** (k // 2) if (n - k) % 2 == odd else 0 for k, c in enumerate(coefficients)][::-1],
-            s,
-            domain=sympy.QQ,
-        )
-        for odd in (0, 1)
+        [c * (-1) ** (k // 2) if (n - k) % 2 == odd else 0 for k, c in enumerate(coefficients)][::-1] for odd in (0, 1)
     )
-    chain = [one, -other if n % 2 == 0 else other]
+    chain = [one, [c if n % 2 else -c for c in _trimmed(other)]]
     while chain[-1]:
-        chain.append(-chain[-2].rem(chain[-1]).clear_denoms(convert=True)[1].primitive()[1].set_domain(sympy.QQ))
+        chain.append([-c for c in _remainder(*chain[-2:])])
     chain.pop()
     common = chain[-1]
-    if common.degree() and common.count_roots():
+    if len(common) > 1 and sympy.Poly(common, s).count_roots():
         return None
-    signs = [[sympy.sign(f.LC()) * side ** f.degree() for f in chain] for side in (-1, 1)]
+    signs = [[math.copysign(1, f[0]) * side ** (len(f) - 1) for f in chain] for side in (-1, 1)]
     changes = [sum(a != b for a, b in pairwise(row)) for row in signs]
-    return int(n - (changes[0] - changes[1])) // 2
+    return (n - (changes[0] - changes[1])) // 2
+
+
+def _trimmed(f: list[int]) -> list[int]:
+    """Without zeros before the highest power."""
+    return f[next((k for k, c in enumerate(f) if c), len(f)) :]
+
+
+def _remainder(f: list[int], g: list[int]) -> list[int]:
+    """A positive multiple of the remainder of f over g, without a common divisor."""
+    factor = abs(g[0])
+    while len(f) >= len(g):
+        quotient = f[0] if g[0] > 0 else -f[0]
+        f = _trimmed([factor * a - quotient * b for a, b in zip_longest(f, g, fillvalue=0)])
+    divisor = math.gcd(*f) or 1
+    return [c // divisor for c in f]

@@ -11,8 +11,9 @@ import numpy as np
 
 from loopbook.quasipolynomials import DelayFraction
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.stability.counting import count_closed, fraction_sums, open_loop
+from loopbook.stability.counting import ON_LIMIT, count_closed, fraction_sums, open_loop
 from loopbook.stability.crossings import SizeOne, asked, difference, phase_left, steps
+from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.loops import Loops
 from plainmath.validation import positive_numbers
 
@@ -138,6 +139,8 @@ def _stable_delays(A: Quasipolynomials, B: Quasipolynomials) -> list[list[tuple[
     np.minimum.at(earliest, which, np.where(first > 0, first, period))
     earliest = np.where(earliest < math.inf, earliest, 1.0)
     begun = count_closed(loops.A.delayed(earliest / 2), loops.B)
+    if (begun == ON_LIMIT).any():
+        raise UndecidedError("the number of unstable poles with the shortest dead times", 0.0, math.inf)
     for k, point in enumerate(decided):
         mine, unit = which == k, float(loops.unit[k])
         regions[point] = [
@@ -155,8 +158,6 @@ def _regions(count, first, period, direction):
     """
     if not len(first):
         return [(0.0, math.inf)] if count == 0 else []
-    if count < 0:
-        return []
     # later, more has come than the crossings of the other direction can take away
     rate = float((direction / period).sum())
     until = (count + abs(direction).sum()) / rate + 2 * period.max() if rate > 0 else 100 * period.max()
