@@ -140,7 +140,7 @@ def _ordered(above: Quasipolynomial, below: Quasipolynomial) -> tuple[Quasipolyn
 def _common(*sums: Quasipolynomial) -> list:
     """The polynomial that all parts of quasipolynomials have in common, the highest power first."""
     parts = [[*map(sympy.ZZ, reversed(part))] for parts in sums for part in parts.values()]
-    if min(map(len, parts)) == 1 or _surely_coprime(parts):
+    if min(map(len, parts)) == 1 or (len(parts) > 1 and _surely_coprime(parts)):
         return [math.gcd(*(int(c) for part in parts for c in part))]
     return functools.reduce(lambda f, g: dup_gcd(f, g, sympy.ZZ), parts)
 
