@@ -121,8 +121,8 @@ class Boxed(Equipment):
         low, high = (0.45, 0.75) if condenser else (0.15, 0.45)
         low, high = (self.y0 + part * (self.y1 - self.y0) for part in (low, high))
         end = self.x1 - 0.45
-        bend = [(end + (high - low) / 2 * y, (low + high) / 2 + (high - low) / 2 * x) for x, y in HALF_CIRCLE]
-        drawing.wire((self.x0, high), *bend, (self.x0, low))
+        curvature = [(end + (high - low) / 2 * y, (low + high) / 2 + (high - low) / 2 * x) for x, y in HALF_CIRCLE]
+        drawing.wire((self.x0, high), *curvature, (self.x0, low))
 
     def _wire(self, drawing):
         drawing.zigzag((self.x0, self.y), (self.x1, self.y), teeth=5, height=0.22)

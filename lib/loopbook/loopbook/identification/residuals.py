@@ -130,8 +130,8 @@ class Residuals:
             named[1, 1] = T[0]
         elif len(T) == 2:
             apart = max(math.sqrt(1 - p[1]), EQUAL)
-            bend = math.exp(p[0]) / 4 / apart
-            named[1, 1:3], named[2, 1:3] = [T[0] - SHORTEST, -bend], [T[1] - SHORTEST, bend]
+            curvature = math.exp(p[0]) / 4 / apart
+            named[1, 1:3], named[2, 1:3] = [T[0] - SHORTEST, -curvature], [T[1] - SHORTEST, curvature]
         left = self.target - fitted
         deviation = math.sqrt((left**2).sum() / max(self.freedom, 1))
         white, first = whiteness(left) if deviation > NOTHING else (1.0, 0.0)

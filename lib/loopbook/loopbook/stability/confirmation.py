@@ -11,7 +11,7 @@ import numpy as np
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus
 from loopbook.stability.certified import certified_count
-from loopbook.stability.counting import ENDLESS, ON_LIMIT, count_closed, count_roots
+from loopbook.stability.counting import INFINITELY_MANY, ON_LIMIT, count_closed, count_roots
 from loopbook.stability.enclosures import UndecidedError
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def _exactly(loops, factor, delay):
     below = {d: tuple(factor.denominator * c for c in part) for d, part in B.parts.items()}
     parts: Quasipolynomial = plus(below, above)
     if max(map(len, parts.values())) > len(parts[Fraction(0)]):
-        return ENDLESS
+        return INFINITELY_MANY
     try:
         count = certified_count(parts, int(loops.at_zero[4][0]))
     except UndecidedError:

@@ -21,7 +21,7 @@ from loopbook.quasipolynomials.fraction import (
     times,
 )
 from loopbook.stability.certified import certified_count
-from loopbook.stability.difference import Endless, at_endless_frequency, power_of_two, prevailing
+from loopbook.stability.difference import AtInfinity, at_infinite_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import (
     NARROWEST,
     Exact,
@@ -38,7 +38,7 @@ from plainmath.expressions import s
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
+ON_LIMIT, INFINITELY_MANY = -1, 10**9  # in place of a number of roots
 MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each quasipolynomial
 FEW_TERMS = 1  # the degree of expansions for many quasipolynomials
 DIGITS = 25  # from which a coefficient may be no fraction
@@ -291,7 +291,7 @@ def _count_of(parts: Quasipolynomial, removable: int, name: Callable[[], object]
             return count + _count_of(rest, removable - zeros, name)
     if count is None or count == ON_LIMIT:
         raise StabilityLimitError(f"{name()} has poles on the imaginary axis, or an infinite row that approaches it")
-    return math.inf if count == ENDLESS else count
+    return math.inf if count == INFINITELY_MANY else count
 
 
 # ---- counting
@@ -358,7 +358,7 @@ def count_roots(
 ) -> np.ndarray:
     """The number of roots in the right half-plane of many quasipolynomials.
 
-    It is ON_LIMIT with some on the axis, or so close to it that it is not told, and ENDLESS without end.
+    It is ON_LIMIT with some on the axis, or so close to it that it is not told, and INFINITELY_MANY without end.
 
     Arguments:
         removable: how many roots at zero do not count.
@@ -378,20 +378,20 @@ def count_roots(
     counts = np.zeros(sums.count)
     with np.errstate(divide="ignore", invalid="ignore"):
         returning = coefficients[1:, -1] / coefficients[0, -1]
-    counts[coefficients[0, -1] == 0] = ENDLESS
-    least, far = 1 - abs(returning).sum(axis=0), {}
+    counts[coefficients[0, -1] == 0] = INFINITELY_MANY
+    least, at_infinity = 1 - abs(returning).sum(axis=0), {}
     for point in np.flatnonzero(~(least > 0) & (counts == 0)):
-        far[point] = at_endless_frequency(returning[:, point], delays[1:, point])
-        least[point] = far[point].least
+        at_infinity[point] = at_infinite_frequency(returning[:, point], delays[1:, point])
+        least[point] = at_infinity[point].least
         if least[point] <= 0:
-            counts[point] = ENDLESS if least[point] < 0 else ON_LIMIT
+            counts[point] = INFINITELY_MANY if least[point] < 0 else ON_LIMIT
     points = np.flatnonzero(counts == 0)
     if len(points):
         coefficients = coefficients[:, :, points] / coefficients[0, -1, points]
         unit = power_of_two(prevailing(coefficients, least[points]))
         scaled = Quasipolynomials(coefficients, delays[:, points]).slower(unit)
         hints = None if near is None else near[points] / unit
-        counts[points] = Turns(scaled, unit, [far.get(point) for point in points], removable).count(hints, most)
+        counts[points] = Turns(scaled, unit, [at_infinity.get(point) for point in points], removable).count(hints, most)
     return counts
 
 
@@ -404,10 +404,10 @@ class Turns:
         self,
         sums: Quasipolynomials,
         unit: np.ndarray,
-        far: list[Endless | None],
+        at_infinity: list[AtInfinity | None],
         removable: int,
     ):
-        self.sums, self.unit, self.far, self.removable = sums, unit, far, removable
+        self.sums, self.unit, self.at_infinity, self.removable = sums, unit, at_infinity, removable
         self.phase, self.limit = np.zeros(sums.count), np.zeros(sums.count, dtype=bool)
         # many quasipolynomials are quicker done with shorter expansions
         self.degree = DEGREE if sums.count < 50 else FEW_TERMS
@@ -420,20 +420,22 @@ class Turns:
         """The numbers of roots in the right half-plane."""
         sums = self.sums
         one, points = np.ones(sums.count), np.arange(sums.count)
-        which, a, b = geometric(_lowest(sums), one, near, RATIO if sums.count < 50 else MANY_RATIO)
+        index, a, b = geometric(_lowest(sums), one, near, RATIO if sums.count < 50 else MANY_RATIO)
         if self.removable:
             start, turn = above_origin(sums, self.removable)
             self.phase += turn
-            some = b > start[which]
-            which, a, b = which[some], np.maximum(a[some], start[which[some]]), b[some]
+            some = b > start[index]
+            index, a, b = index[some], np.maximum(a[some], start[index[some]]), b[some]
         else:
             size, at_zero = sums.sizes(points, 0 * one)[0], sums.coefficients[:, 0].sum(axis=0)
             self.limit |= abs(at_zero) <= 1e-15 * size
-        some = ~self.limit[which]
+        some = ~self.limit[index]
         most = most or MOST_INTERVALS + MORE_INTERVALS * sums.count
-        walk(self.judge, which[some], a[some], b[some], self.name, self.unit, most=most)
+        walk(self.judge, index[some], a[some], b[some], self.name, self.unit, most=most)
         ends = sums.value(points, one) * (-1j) ** sums.order
-        beyond = [each.phase(scale) if each else 0.0 for each, scale in zip(self.far, self.unit.tolist(), strict=True)]
+        beyond = [
+            each.phase(scale) if each else 0.0 for each, scale in zip(self.at_infinity, self.unit.tolist(), strict=True)
+        ]
         # of n roots on the left, each turns the phase by a quarter turn; the rest of it comes beyond the frequency 1
         left = np.array(beyond) + np.angle(ends * np.exp(-1j * np.array(beyond)))
         counts = (sums.order - self.removable) / 2 - (self.phase - left) / math.pi
@@ -444,31 +446,31 @@ class Turns:
             counts = whole
         return np.where(self.limit, ON_LIMIT, counts) + 0.0  # no negative zero
 
-    def judge(self, which: np.ndarray, a: np.ndarray, b: np.ndarray, precise: bool) -> tuple:
+    def judge(self, index: np.ndarray, a: np.ndarray, b: np.ndarray, precise: bool) -> tuple:
         """Add the turns on intervals where they are known, and mark quasipolynomials with roots on the axis."""
         sums, c, r = self.sums, (a + b) / 2, (b - a) / 2
-        around = enclosed(sums, which, c, r, degree=self.degree)
+        around = enclosed(sums, index, c, r, degree=self.degree)
         # all values then lie in a disc without zero, so that the phase turns by less than a half from one end to the
         # other; three times the noise, because both ends are rounded as well
         proven = around.least > 3 * around.noise
-        at_a, at_b = sums.value(which, a), sums.value(which, b)
+        at_a, at_b = sums.value(index, a), sums.value(index, b)
         turns = np.angle(at_b * at_a.conj())
         if self.rest is not None and not proven.all():
             # where the undelayed part outweighs the others, the phase is its own, and less than a quarter turn more
             left = np.flatnonzero(~proven)
-            alone = enclosed(self.first, which[left], c[left], r[left], degree=self.degree)
-            outweighs = alone.least > self.rest.sizes(which[left], b[left])[0] + 3 * alone.noise
+            alone = enclosed(self.first, index[left], c[left], r[left], degree=self.degree)
+            outweighs = alone.least > self.rest.sizes(index[left], b[left])[0] + 3 * alone.noise
             of = left[outweighs]
             if len(of):
                 proven[of] = True
-                alone_a, alone_b = self.first.value(which[of], a[of]), self.first.value(which[of], b[of])
+                alone_a, alone_b = self.first.value(index[of], a[of]), self.first.value(index[of], b[of])
                 turns[of] = np.angle(alone_b * alone_a.conj())
                 turns[of] += np.angle(at_b[of] / alone_b) - np.angle(at_a[of] / alone_a)
-        self.phase += np.bincount(which[proven], weights=turns[proven], minlength=sums.count)
+        self.phase += np.bincount(index[proven], weights=turns[proven], minlength=sums.count)
         noisy = around.is_noisy & (around.spread < 64 * around.noise)
         lost = ~proven & ((b - a <= 2 * NARROWEST * b) | (b < 1e-200) | noisy)
-        self.limit[which[lost]] = True
-        return ~proven & ~self.limit[which], noisy, sums.longest[which]
+        self.limit[index[lost]] = True
+        return ~proven & ~self.limit[index], noisy, sums.longest[index]
 
 
 def _lowest(sums):

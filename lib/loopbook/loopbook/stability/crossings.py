@@ -29,29 +29,29 @@ LARGEST_GAIN = 1e12  # times 1, or times that which brings abs(L) to 1 about the
 class View:
     """Loops on intervals of frequency: what the questions look at, each thing computed once."""
 
-    def __init__(self, loops: Loops, which: np.ndarray, a: np.ndarray, b: np.ndarray, precise: bool = False):
-        self.loops, self.which, self.a, self.b, self.precise = loops, which, a, b, precise
+    def __init__(self, loops: Loops, index: np.ndarray, a: np.ndarray, b: np.ndarray, precise: bool = False):
+        self.loops, self.index, self.a, self.b, self.precise = loops, index, a, b, precise
         self.c, self.r = (a + b) / 2, (b - a) / 2
 
     @functools.cached_property
     def A(self) -> Enclosure:
-        return enclosed(self.loops.A, self.which, self.c, self.r, self.loops.exact[0] if self.precise else None)
+        return enclosed(self.loops.A, self.index, self.c, self.r, self.loops.exact[0] if self.precise else None)
 
     @functools.cached_property
     def B(self) -> Enclosure:
-        return enclosed(self.loops.B, self.which, self.c, self.r, self.loops.exact[1] if self.precise else None)
+        return enclosed(self.loops.B, self.index, self.c, self.r, self.loops.exact[1] if self.precise else None)
 
     @functools.cached_property
     def early(self) -> Enclosure:
         """A without its common dead time, which does not change its size."""
-        if self.precise or float((self.r * self.loops.lag[self.which]).max(initial=0.0)) < 0.3:
+        if self.precise or float((self.r * self.loops.lag[self.index]).max(initial=0.0)) < 0.3:
             return self.A
-        return enclosed(self.loops.early, self.which, self.c, self.r)
+        return enclosed(self.loops.early, self.index, self.c, self.r)
 
     @functools.cached_property
     def C(self) -> Enclosure:
         if self.precise:
-            return enclosed(self.loops.C, self.which, self.c, self.r, self.loops.exact[2])
+            return enclosed(self.loops.C, self.index, self.c, self.r, self.loops.exact[2])
         return self.B + self.A
 
 
@@ -61,7 +61,7 @@ class NearZero(View):
     def __init__(self, loops: Loops, b: np.ndarray):
         super().__init__(loops, np.arange(loops.count), 0 * b, b)
         self.c, self.r = 0 * b, b
-        self.A, self.B = loops.near_zero(self.which, b)
+        self.A, self.B = loops.near_zero(self.index, b)
         self.early = self.A
 
     @functools.cached_property
@@ -100,7 +100,7 @@ class SizeOne(Question):
     def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
         A, B = view.early, view.B
         undecided = (B.least <= A.most) & (A.least <= B.most)
-        self.crossing, noisy = np.zeros((2, len(view.which)), dtype=bool)
+        self.crossing, noisy = np.zeros((2, len(view.index)), dtype=bool)
         if (some := np.flatnonzero(undecided)).size:
             A, B = A[some], B[some]
             rest = (B @ B).real - (A @ A).real
@@ -112,21 +112,21 @@ class SizeOne(Question):
     def take(self, view: View, chosen: np.ndarray) -> None:
         some = np.flatnonzero(self.crossing & chosen)
         if len(some):
-            which, a, b = (x[some] for x in (view.which, view.a, view.b))
+            index, a, b = (x[some] for x in (view.index, view.a, view.b))
             low, high = (
                 abs(B[0]) ** 2 - abs(A[0]) ** 2
-                for A, B in (view.loops.values(which, end, 0, view.precise) for end in (a, b))
+                for A, B in (view.loops.values(index, end, 0, view.precise) for end in (a, b))
             )
             some = (low > 0) != (high > 0)
-            self.brackets.append([x[some] for x in (which, a, b, low, high)])
+            self.brackets.append([x[some] for x in (index, a, b, low, high)])
 
     def solved(self, loops: Loops) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """The points and frequencies, and A and B there."""
         if not self.brackets:
             nothing = np.zeros(0)
             return nothing.astype(int), nothing, nothing, nothing
-        which, a, b, low, high = (np.concatenate(x) for x in zip(*self.brackets, strict=True))
-        return which, *solved(loops, which, a, b, difference, low, high)
+        index, a, b, low, high = (np.concatenate(x) for x in zip(*self.brackets, strict=True))
+        return index, *solved(loops, index, a, b, difference, low, high)
 
 
 class Real(Question):
@@ -144,8 +144,8 @@ class Real(Question):
         every, one = np.arange(loops.count), np.ones(loops.count)
         A, B = (abs(x[0]) for x in loops.values(every, one))
         with np.errstate(divide="ignore"):
-            self.endless = LARGEST_GAIN * np.maximum(1, np.where(A > 0, B / A, 1))
-        self.lowest, self.highest = np.zeros(loops.count), self.endless.copy()
+            self.infinite_from = LARGEST_GAIN * np.maximum(1, np.where(A > 0, B / A, 1))
+        self.lowest, self.highest = np.zeros(loops.count), self.infinite_from.copy()
         self.points, self.gains, self.frequencies = np.zeros(0, dtype=int), np.zeros(0), np.zeros(0)
 
     def add(self, points: np.ndarray, gains: np.ndarray, frequencies: np.ndarray) -> None:
@@ -166,12 +166,12 @@ class Real(Question):
         return ((self.points == points[:, None]) & (w >= a[:, None]) & (w <= b[:, None])).any(axis=1)
 
     def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
-        which = view.which
-        undecided = ~self.loops.is_real[which]
-        undecided &= (self.highest[which] * view.early.most >= view.B.least) & (
-            self.lowest[which] * view.early.least <= view.B.most
+        index = view.index
+        undecided = ~self.loops.is_real[index]
+        undecided &= (self.highest[index] * view.early.most >= view.B.least) & (
+            self.lowest[index] * view.early.least <= view.B.most
         )
-        noisy = np.zeros(len(which), dtype=bool)
+        noisy = np.zeros(len(index), dtype=bool)
         some = np.flatnonzero(undecided)
         if not len(some):
             return undecided, noisy
@@ -181,12 +181,12 @@ class Real(Question):
         away = np.where(middle.real < 0, abs(middle.imag), abs(middle)) > product.spread
         monotone = ~away & product.imag.is_monotone
         if len(candidates := some[monotone]):
-            points, a, b = (x[candidates] for x in (which, view.a, view.b))
+            points, a, b = (x[candidates] for x in (index, view.a, view.b))
             ends = (self.loops.values(points, end, 0, view.precise) for end in (a, b))
             self.solve(points, a, b, *((A[0] * B[0].conj()).imag for A, B in ends))
         left = ~away & ~monotone
         if not self.all_gains:
-            left &= ~_misses(A, B, self.lowest[which[some]], self.highest[which[some]])
+            left &= ~_misses(A, B, self.lowest[index[some]], self.highest[index[some]])
         undecided[some] = left
         noisy[some] = product.is_noisy | (abs(middle.imag) < 16 * product.noise)
         return undecided, noisy
@@ -233,7 +233,7 @@ def difference(A: Sequence, B: Sequence) -> tuple:
 
 def solved(
     loops: Loops,
-    which: np.ndarray,
+    index: np.ndarray,
     a: np.ndarray,
     b: np.ndarray,
     function: Callable,
@@ -246,26 +246,26 @@ def solved(
     """
     # where a straight line has its zero, not too close to the ends
     w = a + (b - a) * np.clip(at_a / np.where(at_a == at_b, 1, at_a - at_b), 0.02, 0.98)
-    w = _solved(loops, which, a, b, function, at_a < at_b, w, False)
-    A, B = (x[0] for x in loops.values(which, w))
+    w = _solved(loops, index, a, b, function, at_a < at_b, w, False)
+    A, B = (x[0] for x in loops.values(index, w))
     if loops.exact is not None and 0 < len(w) < FEW:
-        noise = loops.noise(which, w)
+        noise = loops.noise(index, w)
         again = np.flatnonzero((noise[0] > DOUBTFUL * abs(A)) | (noise[1] > DOUBTFUL * abs(B)))
         if len(again):
-            some = which[again]
+            some = index[again]
             w[again] = _solved(loops, some, a[again], b[again], function, (at_a < at_b)[again], w[again], True)
             A[again], B[again] = (x[0] for x in loops.values(some, w[again], precise=True))
     return w, A, B
 
 
-def _solved(loops, which, a, b, function, rising, w, precise):
+def _solved(loops, index, a, b, function, rising, w, precise):
     """Halley's steps, and halves where they lead out."""
-    a, b, moving = a.copy(), b.copy(), np.arange(len(which))
+    a, b, moving = a.copy(), b.copy(), np.arange(len(index))
     enough = 3e-6 * (b - a)
     for _ in range(100):
         if not len(moving):
             break
-        value, slope, curvature = function(*loops.values(which[moving], w[moving], 2, precise))
+        value, slope, curvature = function(*loops.values(index[moving], w[moving], 2, precise))
         before = (value < 0) == rising[moving]
         a[moving] = np.where(before, w[moving], a[moving])
         b[moving] = np.where(before, b[moving], w[moving])
@@ -293,36 +293,36 @@ def phase_left(A: np.ndarray, B: np.ndarray) -> np.ndarray:
 def asked(
     loops: Loops,
     questions: list[Question],
-    which: np.ndarray,
+    index: np.ndarray,
     a: np.ndarray,
     b: np.ndarray,
     most: int | None = None,
 ) -> int:
     """Ask questions about all intervals, dividing them until all are decided; return how many there were."""
 
-    def judge(which, a, b, precise):
-        view = View(loops, which, a, b, precise)
-        undecided, noisy = np.zeros(len(which), dtype=bool), np.zeros(len(which), dtype=bool)
+    def judge(index, a, b, precise):
+        view = View(loops, index, a, b, precise)
+        undecided, noisy = np.zeros(len(index), dtype=bool), np.zeros(len(index), dtype=bool)
         for question in questions:
             open_, doubtful = question.judge(view)
             undecided |= open_
             noisy |= open_ & doubtful
         for question in questions:
             question.take(view, ~undecided)
-        return undecided, noisy, loops.longest[which]
+        return undecided, noisy, loops.longest[index]
 
     peaked = next((question for question in questions if question.place is not None), None)
 
-    def divide(which, a, b, pieces):
+    def divide(index, a, b, pieces):
         if peaked is None:
-            return divided(which, a, b, pieces)
-        about = (a < peaked.place[which]) & (peaked.place[which] < b)
-        others = divided(*(x[~about] for x in (which, a, b, pieces)))
-        near = divided_about(peaked.place, *(x[about] for x in (which, a, b)))
+            return divided(index, a, b, pieces)
+        about = (a < peaked.place[index]) & (peaked.place[index] < b)
+        others = divided(*(x[~about] for x in (index, a, b, pieces)))
+        near = divided_about(peaked.place, *(x[about] for x in (index, a, b)))
         return tuple(np.concatenate(x) for x in zip(others, near, strict=True))
 
     names = " and ".join(question.name for question in questions)
-    return walk(judge, which, a, b, names, loops.unit, loops.exact is not None, divide, most)
+    return walk(judge, index, a, b, names, loops.unit, loops.exact is not None, divide, most)
 
 
 def wider(loops: Loops, done: np.ndarray) -> np.ndarray:
@@ -334,6 +334,6 @@ def wider(loops: Loops, done: np.ndarray) -> np.ndarray:
 def steps(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intervals from start to end, in geometric steps, for each loop for which the end is the larger one."""
     points = np.flatnonzero(end > start)
-    which, a, b = geometric(start[points], end[points])
-    some = a >= start[points[which]]
-    return points[which[some]], a[some], b[some]
+    index, a, b = geometric(start[points], end[points])
+    some = a >= start[points[index]]
+    return points[index[some]], a[some], b[some]

@@ -16,7 +16,7 @@ HIGHEST_MULTIPLE = 5000  # of one dead time, up to which others count as multipl
 CLOSE = 1e-9
 
 
-class Endless(NamedTuple):
+class AtInfinity(NamedTuple):
     """What the highest powers are in the right half-plane: a lower bound of the size, and the phase on the boundary.
 
     `least` is zero on the limit, negative where there are roots in the right half-plane. Without `angles` the phase is
@@ -51,7 +51,7 @@ def common_unit(delays: list[float]) -> tuple[float, list[int]] | None:
     return (delays[0] * float(share), powers) if max(powers) <= HIGHEST_MULTIPLE else None
 
 
-def at_endless_frequency(later: np.ndarray, delays: np.ndarray) -> Endless:
+def at_infinite_frequency(later: np.ndarray, delays: np.ndarray) -> AtInfinity:
     """What ``1 + sum(later*exp(-delays*s))`` is in the right half-plane.
 
     Raises ValueError where that is not decided: where the sizes add up to 1 or more and the dead times are not
@@ -62,17 +62,17 @@ def at_endless_frequency(later: np.ndarray, delays: np.ndarray) -> Endless:
     later, delays = later[some], delays[some]
     total = float(abs(later).sum())
     if total < 1:
-        return Endless(1 - total)
+        return AtInfinity(1 - total)
     if len(set(delays.tolist())) == 1:
         later = later.sum(keepdims=True)
         total = float(abs(later[0]))
         if total < 1:
-            return Endless(1 - total)
-        return Endless(0.0 if total == 1 else -1.0)
+            return AtInfinity(1 - total)
+        return AtInfinity(0.0 if total == 1 else -1.0)
     if abs(later).max() > total - abs(later).max() + 1:
         # on the axis this one outweighs all others, so that the phase turns with it without end; far to the right only
         # the undelayed one is left, and it does not turn: in between there are roots
-        return Endless(-1.0)
+        return AtInfinity(-1.0)
     unit = common_unit(delays.tolist())
     if unit:
         found = _on_circle(later, *unit)
@@ -103,9 +103,9 @@ def _on_circle(later, unit, powers):
             continue
         turns = np.angle(values[1:] / values[:-1])
         if round(turns.sum() / (2 * math.pi)):
-            return Endless(-1.0)  # exp(-unit*s) runs through the disc in which there are roots
+            return AtInfinity(-1.0)  # exp(-unit*s) runs through the disc in which there are roots
         phases = np.concatenate([[0.0], np.cumsum(turns)])
-        return Endless(float(low.min()), unit, edges, phases, values, (later, powers))
+        return AtInfinity(float(low.min()), unit, edges, phases, values, (later, powers))
     return None
 
 

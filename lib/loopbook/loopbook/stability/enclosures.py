@@ -133,9 +133,9 @@ class Enclosure:
     def is_positive(self) -> np.ndarray:
         """Whether a real function is certainly positive: a parabola is, and the rest does not change that."""
         value, rise = self.terms[0], self.sizes[1]
-        bend = self.terms[2] - (self.size - self.sizes[0] - self.sizes[1] - self.sizes[2])
+        curvature = self.terms[2] - (self.size - self.sizes[0] - self.sizes[1] - self.sizes[2])
         with np.errstate(divide="ignore", invalid="ignore"):
-            lowest = np.where(rise < 2 * bend, value - rise * rise / (4 * bend), value + bend - rise)
+            lowest = np.where(rise < 2 * curvature, value - rise * rise / (4 * curvature), value + curvature - rise)
         return lowest > self.rest
 
 
@@ -151,7 +151,7 @@ def _diagonals(count):
 
 def enclosed(
     sums: Quasipolynomials,
-    which: np.ndarray,
+    index: np.ndarray,
     c: np.ndarray,
     r: np.ndarray,
     exact: Exact | None = None,
@@ -160,10 +160,10 @@ def enclosed(
     """The quasipolynomials on the intervals from c - r to c + r; with more digits where there is an exact one."""
     end, degrees = c + r, np.arange(degree + 2)
     scale = r ** degrees[:, None]
-    sizes = sums.sizes(which, end, degree) * scale
+    sizes = sums.sizes(index, end, degree) * scale
     if exact is None:
-        terms = sums.taylor(which, c, degree) * scale[:-1]
-        share = EPSILON * (2 * sums.order + 8 + 2 * end * sums.longest[which])
+        terms = sums.taylor(index, c, degree) * scale[:-1]
+        share = EPSILON * (2 * sums.order + 8 + 2 * end * sums.longest[index])
         noise, steep = share * sizes[:-1].sum(axis=0), share * (degrees[:-1] @ sizes[:-1])
     else:
         terms = exact.taylor(c, degree) * scale[:-1]
@@ -278,10 +278,10 @@ def geometric(
         closer = near * _OFFSETS()[:, None]
         closer = np.where((closer > 0) & (closer < end), closer, end)
         edges = np.sort(np.concatenate([edges, closer]), axis=0)
-    which = np.broadcast_to(np.arange(len(start)), edges[1:].shape)
+    index = np.broadcast_to(np.arange(len(start)), edges[1:].shape)
     a, b = edges[:-1], edges[1:]
     some = b > a
-    return which[some], a[some], b[some]
+    return index[some], a[some], b[some]
 
 
 @functools.cache
@@ -292,7 +292,7 @@ def _OFFSETS():
 
 def walk(
     judge: Callable,
-    which: np.ndarray,
+    index: np.ndarray,
     a: np.ndarray,
     b: np.ndarray,
     what: str,
@@ -306,7 +306,7 @@ def walk(
     Arguments:
         judge: function of points, both ends and whether to compute with more digits; it returns which intervals are
             undecided, for which of these rounding is a reason, and the longest dead time of each.
-        which, a, b: the intervals at first.
+        index, a, b: the intervals at first.
         what: is asked, for the message.
         exact: whether more digits are at hand.
         divide: another function than `divided`.
@@ -318,14 +318,14 @@ def walk(
     """
     most = MOST_INTERVALS + MORE_INTERVALS * len(unit) if most is None else most
     left, digits_left = most, MOST_EXACT
-    pending = [(which, a, b)]
+    pending = [(index, a, b)]
     while pending:
-        which, a, b = pending.pop()
-        if len(which) > MOST_AT_ONCE:
-            pending += [(which[MOST_AT_ONCE:], a[MOST_AT_ONCE:], b[MOST_AT_ONCE:])]
-            which, a, b = (x[:MOST_AT_ONCE] for x in (which, a, b))
-        left -= len(which)
-        undecided, noisy, delay = judge(which, a, b, False)
+        index, a, b = pending.pop()
+        if len(index) > MOST_AT_ONCE:
+            pending += [(index[MOST_AT_ONCE:], a[MOST_AT_ONCE:], b[MOST_AT_ONCE:])]
+            index, a, b = (x[:MOST_AT_ONCE] for x in (index, a, b))
+        left -= len(index)
+        undecided, noisy, delay = judge(index, a, b, False)
         if not undecided.any():
             continue
         narrow = (b - a) <= 2 * NARROWEST * b
@@ -333,39 +333,39 @@ def walk(
             again = np.flatnonzero(undecided & (noisy | narrow))
             digits_left -= len(again)
             if digits_left >= 0:
-                undecided[again] = judge(which[again], a[again], b[again], True)[0]
+                undecided[again] = judge(index[again], a[again], b[again], True)[0]
         stuck = np.flatnonzero(undecided & (narrow | (b <= 1e-250)))
         if left < 0 or digits_left < 0 or len(stuck):
             k = stuck[0] if len(stuck) else np.flatnonzero(undecided)[0]
-            raise UndecidedError(what, a[k], b[k], float(unit[which[k]]))
-        which, a, b, delay = (x[undecided] for x in (which, a, b, delay))
+            raise UndecidedError(what, a[k], b[k], float(unit[index[k]]))
+        index, a, b, delay = (x[undecided] for x in (index, a, b, delay))
         pieces = np.clip(np.ceil((b - a) * delay / 0.8), 4, 64).astype(int)
-        pending.append((divide or divided)(which, a, b, pieces))
+        pending.append((divide or divided)(index, a, b, pieces))
     return most - left
 
 
 def divided(
-    which: np.ndarray, a: np.ndarray, b: np.ndarray, pieces: np.ndarray
+    index: np.ndarray, a: np.ndarray, b: np.ndarray, pieces: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intervals in equal pieces."""
-    source = np.repeat(np.arange(len(which)), pieces)
+    source = np.repeat(np.arange(len(index)), pieces)
     number = np.arange(len(source)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     step, pieces = ((b - a) / pieces)[source], pieces[source]
     start = a[source]
     end = np.where(number + 1 == pieces, b[source], start + (number + 1) * step)
-    return which[source], start + number * step, end
+    return index[source], start + number * step, end
 
 
 def divided_about(
-    places: np.ndarray, which: np.ndarray, a: np.ndarray, b: np.ndarray
+    places: np.ndarray, index: np.ndarray, a: np.ndarray, b: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intervals that hold the places of their points, in three pieces, of which one has the place in its middle."""
-    p = places[which]
+    p = places[index]
     r = np.minimum(np.minimum(p - a, b - p), (b - a) / 8)
     edges = (a, p - r, p + r, b)
-    which, a, b = np.tile(which, 3), np.concatenate(edges[:3]), np.concatenate(edges[1:])
+    index, a, b = np.tile(index, 3), np.concatenate(edges[:3]), np.concatenate(edges[1:])
     some = b > a
-    return which[some], a[some], b[some]
+    return index[some], a[some], b[some]
 
 
 # ---- at zero

@@ -59,7 +59,7 @@ def ultimate(process: object) -> tuple[float, float]:
         opposite = -L
         other = _stable_range(Loops(*fraction_sums(opposite), opposite))[0][0]
         hint = "" if math.isnan(other) else ", but a negative one does"
-        least = float(_endless_gains(loops, HighFrequencies(loops, pivot=0.0))[0])
+        least = float(_gains_at_infinity(loops, HighFrequencies(loops, pivot=0.0))[0])
         below = f" below {least:.6g}, with which the gain at infinite frequency is 1," if least < math.inf else ""
         raise ValueError(f"no positive gain{below} makes the closed loop of {L.expr} stable{hint}")
     return gain, 2 * math.pi / frequency if frequency else math.inf
@@ -163,10 +163,10 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
     on, is it asked whether the loop is stable up to there, as soon as none that is lower can lie beyond the window.
     """
     count, unit = loops.count, loops.unit
-    far = HighFrequencies(loops, pivot=0.0) if loops.exact is not None else None
-    endless = _endless_gains(loops, far)
+    at_infinity = HighFrequencies(loops, pivot=0.0) if loops.exact is not None else None
+    gains_at_infinity = _gains_at_infinity(loops, at_infinity)
     real = Real(loops, all_gains=True)
-    real.highest = np.minimum(real.highest, endless)
+    real.highest = np.minimum(real.highest, gains_at_infinity)
     found, place, lower = np.full(count, math.nan), np.full(count, math.nan), np.zeros(count)
     searched = np.ones(count, dtype=bool)
     static = loops.static_gains()
@@ -179,7 +179,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
         done = end
         while searched.any():
             # the lowest gain on the limit that is left, or the end of all
-            next_gain, next_place = np.minimum(endless, LARGEST), np.full(count, math.inf)
+            next_gain, next_place = np.minimum(gains_at_infinity, LARGEST), np.full(count, math.inf)
             new = np.flatnonzero(real.gains > lower[real.points] * (1 + 1e-12))
             order = new[np.argsort(-real.gains[new])]
             better = order[real.gains[order] < next_gain[real.points[order]]]
@@ -187,7 +187,9 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
                 real.gains[better],
                 real.frequencies[better],
             )
-            need = _complete_beyond(loops, far, lower, next_gain, next_gain >= endless, next_gain >= LARGEST)
+            need = _complete_beyond(
+                loops, at_infinity, lower, next_gain, next_gain >= gains_at_infinity, next_gain >= LARGEST
+            )
             ready = searched & ((need <= done) | (next_gain <= _least_gain(loops, done)))
             if not ready.any():
                 break
@@ -200,7 +202,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
             found[stable] = np.where(unlimited[good], math.inf, next_gain[stable])
             place[stable] = np.where(unlimited[good], math.inf, next_place[stable] * unit[stable])
             lower[points] = next_gain[points]
-            searched[points[good | (next_gain[points] >= np.minimum(endless[points], LARGEST))]] = False
+            searched[points[good | (next_gain[points] >= np.minimum(gains_at_infinity[points], LARGEST))]] = False
         if not searched.any():
             return found, place
         far_out = np.flatnonzero(searched & ((done * loops.longest > MOST_TURNS) | (done > FURTHEST)))
@@ -232,15 +234,15 @@ def _counted(loops, points, lower, middle):
     raise UndecidedError(f"the number of unstable poles with the gain {gain:.6g}", 0.0, math.inf)
 
 
-def _complete_beyond(loops, far, lower, gain, is_endless, is_largest):
+def _complete_beyond(loops, at_infinity, lower, gain, is_at_infinity, is_largest):
     """The frequency beyond which no lower gain brings poles to the axis."""
     need = loops.beyond(np.minimum(gain, 1e100))
-    if far is None:
-        need = np.where(is_endless & ~is_largest, np.fmin(need, loops.beyond_limit()), need)
-    elif not far.vanishes:
-        need = np.fmin(need, far.no_crossing_beyond(float(lower[0]), float(gain[0])))
+    if at_infinity is None:
+        need = np.where(is_at_infinity & ~is_largest, np.fmin(need, loops.beyond_limit()), need)
+    elif not at_infinity.vanishes:
+        need = np.fmin(need, at_infinity.no_crossing_beyond(float(lower[0]), float(gain[0])))
     if is_largest.any():
-        last = np.array([loops.real_beyond]) if far is not None else loops.real_beyond_all()
+        last = np.array([loops.real_beyond]) if at_infinity is not None else loops.real_beyond_all()
         need = np.where(is_largest, np.fmin(need, last), need)
     return np.nan_to_num(need, nan=math.inf)
 
@@ -249,14 +251,14 @@ def _least_gain(loops, w):
     """A gain that is too small for poles on the axis beyond a frequency."""
     A, B = loops._term_sizes
     powers = np.maximum(w, 1.0) ** np.arange(len(A))[:, None]
-    least = loops._endless_reserve * powers[-1] - (B[:-1] * powers[:-1]).sum(axis=0)
+    least = loops._reserve_at_infinity * powers[-1] - (B[:-1] * powers[:-1]).sum(axis=0)
     return np.maximum(least, 0) / (A * powers).sum(axis=0)
 
 
-def _endless_gains(loops, far):
+def _gains_at_infinity(loops, at_infinity):
     """The lowest gain with which the highest powers alone have unstable roots; infinite if none is known."""
-    if far is not None:
-        return np.array([far.highest])
+    if at_infinity is not None:
+        return np.array([at_infinity.highest])
     a, b = (loops.A + 0.0 * loops.B).coefficients[:, -1], (0.0 * loops.A + loops.B).coefficients[:, -1]
     lowest = np.full(loops.count, math.inf)
     if not a.any():

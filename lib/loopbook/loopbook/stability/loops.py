@@ -11,7 +11,7 @@ import numpy as np
 
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials, expanded, turns
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
-from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
+from loopbook.stability.difference import at_infinite_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, origin
 
 if TYPE_CHECKING:
@@ -34,14 +34,14 @@ class Loops:
 
     def __init__(self, A: Quasipolynomials, B: Quasipolynomials, fraction: DelayFraction | None = None):
         if B.coefficients[1:, -1].any():
-            self.endless_least = np.array([_least_at_endless(B, k) for k in range(B.count)])
+            self.least_at_infinity = np.array([_least_at_infinity(B, k) for k in range(B.count)])
         else:
-            self.endless_least = abs(B.coefficients[0, -1])
-        if not (self.endless_least > 0).all():
+            self.least_at_infinity = abs(B.coefficients[0, -1])
+        if not (self.least_at_infinity > 0).all():
             raise ValueError(
                 "the highest power of the open loop's denominator returns so strongly that nothing is decided"
             )
-        self.unit = power_of_two(prevailing(B.coefficients, self.endless_least))
+        self.unit = power_of_two(prevailing(B.coefficients, self.least_at_infinity))
         order = B.order
         self.A, self.B = A.slower(self.unit), B.slower(self.unit)
         self.lag = self.A.delays.min(axis=0)
@@ -53,7 +53,7 @@ class Loops:
 
     def __getitem__(self, points: object) -> Loops:
         chosen = object.__new__(Loops)
-        for name in ("A", "B", "lag", "unit", "endless_least"):
+        for name in ("A", "B", "lag", "unit", "least_at_infinity"):
             setattr(chosen, name, getattr(self, name)[points])
         chosen.count, chosen.exact, chosen.fraction = chosen.B.count, None, None
         return chosen
@@ -74,13 +74,13 @@ class Loops:
         return np.maximum(self.A.longest, self.B.longest)
 
     def values(
-        self, which: np.ndarray, w: np.ndarray, degree: int = 0, precise: bool = False
+        self, index: np.ndarray, w: np.ndarray, degree: int = 0, precise: bool = False
     ) -> tuple[np.ndarray, np.ndarray]:
         """The expansions of A and B at frequencies."""
         if precise:
             return tuple(each.taylor(w, degree) for each in self.exact[:2])
         if self.count > 1:
-            return self.A.taylor(which, w, degree), self.B.taylor(which, w, degree)
+            return self.A.taylor(index, w, degree), self.B.taylor(index, w, degree)
         matrices, delays, parts = self._stacked
         values = expanded(matrices, delays, w, degree)
         return values[:parts].sum(axis=0), values[parts:].sum(axis=0)
@@ -91,10 +91,10 @@ class Loops:
         delays = np.concatenate([self.A.delays[:, 0], self.B.delays[:, 0]])
         return np.concatenate([self.A.turned, self.B.turned]), delays, len(self.A.delays)
 
-    def noise(self, which: np.ndarray, w: np.ndarray) -> list[np.ndarray]:
+    def noise(self, index: np.ndarray, w: np.ndarray) -> list[np.ndarray]:
         """Bounds of the rounding in the values of A and B."""
         return [
-            EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
+            EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[index]) * sums.sizes(index, w, -1)[0]
             for sums in (self.A, self.B)
         ]
 
@@ -115,17 +115,17 @@ class Loops:
                 a[-n:, some] = b[-n:, some] = 0
         return a * turns(degree + 1), b * turns(degree + 1), more_a, more_b, removed
 
-    def near_zero(self, which: np.ndarray, r: np.ndarray) -> tuple[Enclosure, Enclosure]:
+    def near_zero(self, index: np.ndarray, r: np.ndarray) -> tuple[Enclosure, Enclosure]:
         """Enclosures of A and B from -r to r, without the zeros at zero that both have."""
         a, b, more_a, more_b, removed = self.at_zero
         found = []
         for series, more in ((a, more_a), (b, more_b)):
             scale = r ** np.arange(len(series))[:, None]
-            terms = series[:, which] * scale
+            terms = series[:, index] * scale
             sizes = abs(terms)
             noise = 8 * EPSILON * sizes.sum(axis=0)
             powers = np.arange(DEGREE + 1, len(series))
-            last = more[which] * r ** (len(series) - removed[which])
+            last = more[index] * r ** (len(series) - removed[index])
             rest = sizes[DEGREE + 1 :].sum(axis=0) + last
             slope = powers @ sizes[DEGREE + 1 :] + 2 * len(series) * last
             found.append(Enclosure(terms[: DEGREE + 1], noise, rest + noise, slope + DEGREE * noise))
@@ -223,7 +223,7 @@ class Loops:
         """A frequency beyond which ``abs(L)*factor`` is below 1; nan where none is known."""
         A, B = self._term_sizes
         sizes = B + factor * A
-        reserve = self._endless_reserve - factor * A[-1]
+        reserve = self._reserve_at_infinity - factor * A[-1]
         sizes[-1] = np.where(reserve > 0, reserve, math.nan)
         end = prevailing(sizes[None])
         # Fujiwara's bound adds up sizes; where it is far out, the squares, in which terms cancel, may do much better
@@ -237,8 +237,8 @@ class Loops:
         return abs(self.A.coefficients).sum(axis=0), abs(self.B.coefficients).sum(axis=0)
 
     @functools.cached_property
-    def _endless_reserve(self):
-        return np.maximum(2 * abs(self.B.coefficients[0, -1]) - self._term_sizes[1][-1], self.endless_least)
+    def _reserve_at_infinity(self):
+        return np.maximum(2 * abs(self.B.coefficients[0, -1]) - self._term_sizes[1][-1], self.least_at_infinity)
 
     @functools.cached_property
     def squares(self) -> list[np.ndarray] | None:
@@ -352,10 +352,10 @@ def _conjugate_product(x, y):
     return product
 
 
-def _least_at_endless(B, point):
+def _least_at_infinity(B, point):
     lead = B.coefficients[:, -1, point]
     if not lead[1:].any():
         return abs(lead[0])
     with np.errstate(divide="ignore", invalid="ignore"):
         later = lead[1:] / lead[0]
-    return abs(lead[0]) * at_endless_frequency(later, B.delays[1:, point]).least
+    return abs(lead[0]) * at_infinite_frequency(later, B.delays[1:, point]).least

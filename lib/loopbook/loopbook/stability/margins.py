@@ -157,7 +157,7 @@ class Survey:
     """Questions about one loop, asked in windows of frequency until bounds answer them for all that is beyond."""
 
     def __init__(self, loops: Loops, questions: list):
-        self.loops, self.far = loops, HighFrequencies(loops)
+        self.loops, self.at_infinity = loops, HighFrequencies(loops)
         kinds = {type(question): question for question in questions}
         self.real, self.size, self.peak = (kinds.get(kind) for kind in (Real, SizeOne, Peak))
         self._begin()
@@ -165,32 +165,32 @@ class Survey:
 
     def _begin(self):
         """What is known at zero and at infinite frequency."""
-        loops, far, one = self.loops, self.far, np.zeros(1, dtype=int)
+        loops, at_infinity, one = self.loops, self.at_infinity, np.zeros(1, dtype=int)
         if self.real:
-            self.real.highest = np.minimum(self.real.highest, far.highest)
-            self.real.lowest = np.maximum(self.real.lowest, far.lowest)
+            self.real.highest = np.minimum(self.real.highest, at_infinity.highest)
+            self.real.lowest = np.maximum(self.real.lowest, at_infinity.lowest)
             if (static := loops.static_gains())[0] > 0:
                 self.real.add(one, static, np.zeros(1))
         if self.peak:
-            self.peak.see(one, np.array([far.sensitivity]), np.full(1, math.inf))
+            self.peak.see(one, np.array([at_infinity.sensitivity]), np.full(1, math.inf))
 
     def _end(self, question, done: float) -> float:
         """A frequency beyond which a question is decided; nan where none is known yet."""
-        far = self.far
+        at_infinity = self.at_infinity
         if question is self.real:
             low, high = float(question.lowest[0]), float(question.highest[0])
-            end = far.no_crossing_beyond(low, high)
-            if not end <= done and (math.isnan(end) or high == question.endless[0]):
+            end = at_infinity.no_crossing_beyond(low, high)
+            if not end <= done and (math.isnan(end) or high == question.infinite_from[0]):
                 end = min(end if end == end else math.inf, self.loops.real_beyond)
             return end
         if question is self.size:
-            return far.size_end()
-        return far.no_peak_beyond(float(question.most[0]) * (1 + ENOUGH))
+            return at_infinity.size_end()
+        return at_infinity.no_peak_beyond(float(question.most[0]) * (1 + ENOUGH))
 
     def _ask(self, questions):
         loops = self.loops
-        if self.size and self.far.size == 0:
-            if questions == [self.size] and self.far.exceeds_one:
+        if self.size and self.at_infinity.size == 0:
+            if questions == [self.size] and self.at_infinity.exceeds_one:
                 return
             raise ValueError("whether the loop's gain at ever higher frequencies stays away from 1 is not decided")
         done = self.peak.below() if self.peak else loops.start
@@ -214,12 +214,12 @@ class Survey:
         """What is not decided beyond a frequency, and what is known about it."""
         text = " and ".join(question.name for question in questions)
         text += f", beyond the frequency {end * self.loops.unit[0]:.6g}, is not decided"
-        if self.far.is_open:
+        if self.at_infinity.is_open:
             text += ", where the highest powers have several dead times"
         if self.real in questions:
             low, high = float(self.real.lowest[0]), float(self.real.highest[0])
             sure = (1 + (high - 1) * (1 - 0.5**n) for n in range(12, 0, -1))
-            known = next((k for k in sure if self.far.no_crossing_beyond(low, k) <= end), 1.0)
+            known = next((k for k in sure if self.at_infinity.no_crossing_beyond(low, k) <= end), 1.0)
             text += f"; the gain margin is between {known:.8g} and {high:.8g}"
         if self.peak in questions:
             text += f"; Ms is {self.peak.most[0]:.8g} or more"
@@ -231,19 +231,19 @@ class Survey:
         end = float(loops.beyond(np.full(1, 2.0))[0])
         end = max(end if end < 64 else 4.0, 4 * start)
         w = start * (2 * end / start) ** (np.arange(80) / 79)
-        which = np.zeros(len(w), dtype=int)
-        A, B = (x[0] for x in loops.values(which, w))
+        index = np.zeros(len(w), dtype=int)
+        A, B = (x[0] for x in loops.values(index, w))
         if self.peak:
             C = A + B
             highest = abs(B * C).argmax() if not C.all() else (abs(B) / abs(C)).argmax()
-            self.peak.see(which[:1], (abs(B) / abs(C))[[highest]], w[[highest]])
+            self.peak.see(index[:1], (abs(B) / abs(C))[[highest]], w[[highest]])
             to_the_top(loops, self.peak)
         if self.real:
             product = A * B.conj()
             imag, negative = product.imag, product.real < 0
             some = np.flatnonzero(((imag[1:] > 0) != (imag[:-1] > 0)) & negative[1:] & negative[:-1])[:8]
             if len(some):
-                self.real.solve(which[some], w[some], w[some + 1], imag[some], imag[some + 1])
+                self.real.solve(index[some], w[some], w[some + 1], imag[some], imag[some + 1])
         ends = [self._end(question, end) for question in questions if question is not self.size]
         return max([end, *(each for each in ends if each < 8 * end)])
 
@@ -266,7 +266,7 @@ class Survey:
         real, unit = self.real, float(self.loops.unit[0])
         found = {}
         for name, omega, value, none in (
-            ("gain_margin", "omega_180", float(real.highest[0]), float(real.endless[0])),
+            ("gain_margin", "omega_180", float(real.highest[0]), float(real.infinite_from[0])),
             ("gain_reduction", "omega_reduction", float(real.lowest[0]), 0.0),
         ):
             if value == none:
@@ -294,7 +294,7 @@ class Survey:
     def delay_margins(self) -> dict[str, float]:
         """How much more dead time there may be; none where the gain at ever higher frequencies is 1 or more."""
         w, left = self._crossings
-        if self.far.size >= 0:
+        if self.at_infinity.size >= 0:
             return {"delay_margin": 0.0, "omega_delay": math.inf}
         if not len(w):
             return {"delay_margin": math.inf, "omega_delay": math.nan}

@@ -9,7 +9,7 @@ import numpy as np
 import sympy
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop, removable
+from loopbook.stability.counting import INFINITELY_MANY, ON_LIMIT, characteristic, count_roots, open_loop, removable
 from loopbook.stability.difference import prevailing
 from plainmath.expressions import s
 from plainmath.validation import whole
@@ -136,7 +136,7 @@ def _strip(sums, unit, count, name, removable):
             inner = middle
         else:
             left, most = middle, between
-    if most == ENDLESS:
+    if most == INFINITELY_MANY:
         raise ValueError(f"an infinite row of poles of {name} comes before the {count} that are wanted")
     return right, left, most
 
@@ -149,7 +149,7 @@ def _right_of(sums, real_part, removable):
     for _ in range(5):
         number = int(count_roots(_shifted(sums, real_part))[0])
         if number != ON_LIMIT:
-            return number - removable if real_part < 0 and number != ENDLESS else number
+            return number - removable if real_part < 0 and number != INFINITELY_MANY else number
         real_part -= 1e-7 * abs(real_part)
     raise ValueError(f"roots lie too close to the line of the real part {real_part:g}")
 

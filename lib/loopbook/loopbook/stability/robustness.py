@@ -130,19 +130,19 @@ def _stable_delays(A: Quasipolynomials, B: Quasipolynomials) -> list[list[tuple[
     loops, end = loops[decided], end[decided]
     size = SizeOne()
     asked(loops, [size], *steps(loops.start, end))
-    which, w, A, B = size.solved(loops)
-    rise = difference(*loops.values(which, w, 2))[1]
+    index, w, A, B = size.solved(loops)
+    rise = difference(*loops.values(index, w, 2))[1]
     first, period = phase_left(A, B) / w, 2 * math.pi / w
     direction = 2 * np.sign(rise).astype(int)
     # counted before the first crossing, because poles may lie on the axis without any dead time
     earliest = np.full(len(decided), math.inf)
-    np.minimum.at(earliest, which, np.where(first > 0, first, period))
+    np.minimum.at(earliest, index, np.where(first > 0, first, period))
     earliest = np.where(earliest < math.inf, earliest, 1.0)
     begun = count_closed(loops.A.delayed(earliest / 2), loops.B)
     if (begun == ON_LIMIT).any():
         raise UndecidedError("the number of unstable poles with the shortest dead times", 0.0, math.inf)
     for k, point in enumerate(decided):
-        mine, unit = which == k, float(loops.unit[k])
+        mine, unit = index == k, float(loops.unit[k])
         regions[point] = [
             (low / unit, high / unit)
             for low, high in _regions(int(begun[k]), first[mine], period[mine], direction[mine])

@@ -39,17 +39,17 @@ class Peak(Question):
         self.place[points[higher]] = frequencies[higher]
 
     def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
-        which = view.which
+        index = view.index
         before = self.most.copy()
         B, C, early = view.B, view.C, view.early
         known = slice(None) if view.precise else ~C.is_noisy
         with np.errstate(divide="ignore", invalid="ignore"):
-            self.see(which[known], (B.sizes[0] / C.sizes[0])[known], view.c[known])
+            self.see(index[known], (B.sizes[0] / C.sizes[0])[known], view.c[known])
         if (self.most > before * (1 + 1e-12)).any():
             to_the_top(self.loops, self)
-        most = self.most[which] * (1 + ENOUGH)
+        most = self.most[index] * (1 + ENOUGH)
         undecided = (most * (B.least - early.most) <= B.most) & (most * C.least <= B.most)
-        noisy = np.zeros(len(which), dtype=bool)
+        noisy = np.zeros(len(index), dtype=bool)
         if (some := np.flatnonzero(undecided)).size:
             B, C, most = B[some], C[some], most[some]
             above = (most * most) * (C @ C).real - (B @ B).real
@@ -148,7 +148,7 @@ def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarra
 def _largest(loops):
     every = np.arange(loops.count)
     peak = Peak(loops)
-    peak.see(every, _at_endless_frequency(loops), np.full(loops.count, math.inf))
+    peak.see(every, _at_infinite_frequency(loops), np.full(loops.count, math.inf))
     done = peak.below()
     end = np.maximum(np.clip(np.nan_to_num(loops.beyond(np.full(loops.count, 2.0)), nan=4.0), 0, 64), 4 * done)
     while True:
@@ -163,7 +163,7 @@ def _largest(loops):
         end = np.where(need > done, np.minimum(need, wider(loops, done)), done)
 
 
-def _at_endless_frequency(loops):
+def _at_infinite_frequency(loops):
     """The largest abs(B/C) of the highest powers."""
 
     a, b = loops.A.coefficients[:, -1], loops.B.coefficients[:, -1]
@@ -180,7 +180,7 @@ def _no_peak_beyond(loops, most):
         end = loops.beyond(np.where(most > 1, most / (most - 1), math.nan))
     if loops.squares is None:
         return end
-    end = np.fmin(end, np.where(most >= _at_endless_frequency(loops), loops.beyond_limit(), math.nan))
+    end = np.fmin(end, np.where(most >= _at_infinite_frequency(loops), loops.beyond_limit(), math.nan))
     if not loops.longest.any():
         C = np.array(square((loops.A.coefficients + loops.B.coefficients)[0]))
         end = np.fmin(end, positive_beyond(most**2 * C - loops.squares[1]))

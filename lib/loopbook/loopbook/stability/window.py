@@ -80,19 +80,19 @@ def _misses_window(A, B, delay):
 
     misses = True
 
-    def undecided(which, a, b, precise):
+    def undecided(index, a, b, precise):
         nonlocal misses
-        view = View(loops, which, a, b)
+        view = View(loops, index, a, b)
         A, B = view.A, view.B
         size_A, size_B, angle = A.sizes[0], B.sizes[0], np.angle(-A.terms[0] / B.terms[0])
         with np.errstate(divide="ignore", invalid="ignore"):
             if meets(size_B / size_A, size_B / size_A, view.c, view.c, angle, 0).any():
                 misses = False
-                return np.zeros(len(which), dtype=bool), False, loops.longest[which]
+                return np.zeros(len(index), dtype=bool), False, loops.longest[index]
             low = np.maximum(B.least, 0) / A.most
             high = np.where(A.least > 0, B.most / np.maximum(A.least, 0), math.inf)
             turn = sum(np.where(x.least > 0, np.arcsin(np.minimum(x.spread / x.sizes[0], 1)), math.pi) for x in (A, B))
-        return meets(low, high, a, b, angle, turn), False, loops.longest[which] + delay
+        return meets(low, high, a, b, angle, turn), False, loops.longest[index] + delay
 
     try:
         walk(undecided, *geometric(np.minimum(loops.start, end / 2), end), "the limit of stability", loops.unit)
