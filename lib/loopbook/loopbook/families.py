@@ -22,6 +22,7 @@ from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.symbols import broadcast_values, fraction_of, with_values
 from loopbook.stability import Margins, is_closed_loop_stable
 from loopbook.stability.counting import ON_LIMIT, count_closed
+from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.sensitivity import largest_sensitivities
 from loopbook.transfer import transfer_function
 from plainmath.expressions import exact
@@ -124,7 +125,10 @@ class Family:
 
     def Ms(self) -> np.ndarray:
         """Return the largest sensitivities, the largest values of abs(1/(1 + L)); infinite for unstable loops."""
-        found = largest_sensitivities(*self._open)
+        try:
+            found = largest_sensitivities(*self._open)
+        except UndecidedError:  # one loop is enough for it
+            found = np.full(math.prod(self.shape), math.nan)
         for point in np.flatnonzero(np.isnan(found)):
             found[point] = self._member(int(point)).margins().Ms if self.is_stable.flat[point] else math.inf
         return found.reshape(self.shape)

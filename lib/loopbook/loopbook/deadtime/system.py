@@ -120,7 +120,7 @@ class System(DelayFraction):
         >>> [complex(round(p.real, 4), round(p.imag, 4)) for p in closed_loop(sympy.exp(-s) / s).poles()]
         [(-0.3181+1.3372j), (-0.3181-1.3372j)]
         """
-        return dominant_roots(self.denominator, count, f"{self.expr}")
+        return dominant_roots(self.denominator, count, f"{self.expr}", self.removable)
 
     # ---- python-control's names
 

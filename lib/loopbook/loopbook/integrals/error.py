@@ -104,17 +104,18 @@ class ErrorFraction:
         D = {delay: part[pole:] for delay, part in D.items()}
         # zeros of D at the origin that only its dead times make, as those of a moving average do
         zeros, poles, _ = fraction.at_origin
-        removable = max(0, min(zeros, poles) - pole)
-        found = cls(fraction, N, D, pole, first, removable)
+        found = cls(fraction, N, D, pole, first, max(0, min(zeros, poles) - pole))
         try:
-            unstable = unstable_roots(D, removable)
+            if poles > zeros + 1:  # one would be that of the step, where the error does not vanish
+                raise StabilityLimitError
+            unstable = unstable_roots(D, poles - pole)
         except StabilityLimitError:
             raise UnstableLoopError(
                 f"E(s) = {fraction.expr} is not stable: it has poles on the imaginary axis"
             ) from None
         if unstable:
             raise UnstableLoopError(f"{fraction.expr} is not stable: {unstable} poles in the right half-plane")
-        if zeros < pole:
+        if zeros < poles:
             raise ValueError(f"the error does not vanish: E(s) = {fraction.expr} has a pole at zero")
         return found
 

@@ -403,6 +403,11 @@ class DelayFraction:
         (zeros, above), (poles, below) = map(lowest_term, (self.numerator, self.denominator))
         return zeros, poles, above / below
 
+    @property
+    def removable(self) -> int:
+        """How many zeros at s = 0 numerator and denominator have in common: 1 of ``(1 - exp(-s))/s``."""
+        return min(self.at_origin[:2]) if self.numerator else 0
+
     # ---- values
 
     def __call__(self, point: complex | ArrayLike) -> np.ndarray:

@@ -171,6 +171,10 @@ def with_values(H: object, values: Mapping[str, np.ndarray]) -> tuple[Quasipolyn
             raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")
         sides.append(Quasipolynomials(coefficients, delays))
     above, below = sides
+    lost = ~below.coefficients.any(axis=(0, 1))
+    if lost.any():
+        these = ", ".join(f"{name} = {row[lost][0]:g}" for name, row in values.items())
+        raise ValueError(f"the denominator of {H} vanishes at {these}: expected a transfer function")
     return above, below
 
 

@@ -93,14 +93,14 @@ def unstable_poles(x: object) -> float:
     """
     if not _is_loop(x):
         H = open_loop(x, zero=True)
-        return _count_of(H.denominator, removable(H), lambda: H.expr)
+        return _count_of(H.denominator, H.removable, lambda: H.expr)
     process, controller = x.process_fraction, x.controller_fraction
     below = times(controller.denominator, process.denominator)
     parts = plus(times(controller.numerator, process.numerator), below)
     if _degree(parts) < _degree(below) or len(parts.get(Fraction(0), ())) < _degree(parts):
         _fraction(x.open_fraction)  # raises for what is improper
         raise ValueError(f"the algebraic loop of {x.open_fraction.expr} has no solution")
-    count = _count_of(parts, removable(process) + removable(controller), lambda: x)
+    count = _count_of(parts, process.removable + controller.removable, lambda: x)
     R = getattr(x, "setpoint_fraction", None)
     if R is not None and controller != R and R.denominator != controller.denominator:
         count += _of_prefilter(R, controller, x)
@@ -143,7 +143,7 @@ def unstable_closed_loop_poles(loop: object) -> float:
     2
     """
     L = open_loop(loop, zero=True)
-    return _count_of(characteristic(L), removable(L), lambda: f"the closed loop of {L.expr}")
+    return _count_of(characteristic(L), L.removable, lambda: f"the closed loop of {L.expr}")
 
 
 def unstable_roots(denominator: Mapping, removable: int = 0) -> float:
@@ -246,11 +246,6 @@ def characteristic(L: DelayFraction) -> Quasipolynomial:
 
 def _degree(parts: Quasipolynomial) -> int:
     return max((len(part) for part in parts.values()), default=0)
-
-
-def removable(H: DelayFraction) -> int:
-    """How many zeros at s = 0 numerator and denominator have in common, by their dead times: (1 - exp(-s))/s."""
-    return min(lowest_term(H.numerator)[0], lowest_term(H.denominator)[0]) if H.numerator else 0
 
 
 def _of_prefilter(R: DelayFraction, C: DelayFraction, loop: object) -> float:

@@ -284,7 +284,7 @@ def _solved(loops, index, a, b, function, rising, w, precise):
 def phase_left(A: np.ndarray, B: np.ndarray) -> np.ndarray:
     """How much more the phase of L = A/B may fall until L is negative, between 0 and 2 pi."""
     angle = np.angle(-A / B)
-    return np.where(abs(angle) < 1e-9, 0, angle) % (2 * math.pi)
+    return np.where(abs(angle) < 1e-12, 0, angle) % (2 * math.pi)
 
 
 # ---- asking

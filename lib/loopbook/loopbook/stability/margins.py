@@ -106,6 +106,8 @@ def margins(loop: object) -> Margins:
     loops = _read(loop)
     if loops is None:
         return NOTHING
+    if not loops.fraction.delays and not loops.fraction.order:
+        return _of_constant(float(loops.fraction(0).real))
     with _or_unstable(loop):
         real, size, peak = Real(loops), SizeOne(), Peak(loops)
         survey = Survey(loops, [real, size, peak])
@@ -116,6 +118,18 @@ def margins(loop: object) -> Margins:
         found["gain_margin"], found["gain_reduction"], found["phase_margin"], found["delay_margin"], Ms,
         found["omega_180"], found["omega_c"], omega_ms,
     )  # fmt: skip
+
+
+def _of_constant(gain: float) -> Margins:
+    """The margins of a loop without lags and dead times: with the gain -1 it has no solution."""
+    limit = -1 / gain if gain < 0 else math.nan
+    return NOTHING._replace(
+        gain_margin=limit if limit > 1 else math.inf,
+        gain_reduction=limit if limit < 1 else 0.0,
+        phase_margin=180.0 if gain == 1 else math.inf,
+        delay_margin=math.inf if abs(gain) < 1 else 0.0,
+        Ms=1 / abs(1 + gain),
+    )
 
 
 def _read(loop: object) -> Loops | None:
@@ -145,7 +159,8 @@ def _cancels_stable(loop: object) -> bool:
 def _or_unstable(loop: object):
     """Say of a loop for which something fails that it is not stable, if that is so; its own poles are counted, too."""
     try:
-        yield
+        with np.errstate(all="ignore"):  # what is not finite decides nothing
+            yield
     except (ValueError, ArithmeticError):
         L = open_loop(loop)
         if not is_closed_loop_stable(L):

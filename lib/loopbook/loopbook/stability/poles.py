@@ -9,7 +9,7 @@ import numpy as np
 import sympy
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.stability.counting import INFINITELY_MANY, ON_LIMIT, characteristic, count_roots, open_loop, removable
+from loopbook.stability.counting import INFINITELY_MANY, ON_LIMIT, characteristic, count_roots, open_loop
 from loopbook.stability.difference import prevailing
 from plainmath.expressions import s
 from plainmath.validation import whole
@@ -45,7 +45,7 @@ def dominant_poles(loop: object, count: int = 2) -> list[complex]:
     [(-0.3181+1.3372j), (-0.3181-1.3372j)]
     """
     L = open_loop(loop)
-    return dominant_roots(characteristic(L), count, f"the closed loop of {L.expr}", removable(L))
+    return dominant_roots(characteristic(L), count, f"the closed loop of {L.expr}", L.removable)
 
 
 def dominant_roots(parts: Quasipolynomial, count: int | None, name: str, removable: int = 0) -> list[complex]:
@@ -60,7 +60,7 @@ def dominant_roots(parts: Quasipolynomial, count: int | None, name: str, removab
     if count is not None:
         whole("count", count)
     if len(parts) == 1:
-        found = _of_polynomial(sympy.Poly(parts[0][::-1], s))
+        found = _of_polynomial(sympy.Poly(parts[0][removable:][::-1], s))
         count = len(found) if count is None else count
     else:
         count = 2 if count is None else count
