@@ -62,7 +62,7 @@ def step_info(
 
     Arguments:
         response_until: function of an end, that returns the `Response` up to there.
-        begin, horizon: ends to begin with, the first in case that it swings very often up to the second, before which
+        begin, horizon: ends to begin with, the first where it oscillates very often up to the second, before which
             it is not taken for settled.
         final: the final value.
         slowest: function that returns some of the slowest poles.
