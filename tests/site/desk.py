@@ -23,8 +23,8 @@ from browser import PATIENCE, SCREENSHOTS, Complaints
 from loopbook import working_copy
 
 ROOT = Path(__file__).parents[2]
-#: What JupyterLab and its packages write on the console by themselves.
-NOISE = (r"^Plugin \S+ .*(took [\d.]+ms|is taking too long) to activate",)  # on a slow machine
+#: What JupyterLab and its packages write on the console by themselves, on a slow machine.
+NOISE = (r"^Plugin \S+ .*(took [\d.]+ms|is taking too long) to activate", r"^Item with index \d+ did not appear within")
 
 
 class Desk:
