@@ -55,7 +55,7 @@ class StabilityLimitError(ValueError):
 def is_stable(x: object) -> bool:
     """Say whether a system or a loop is stable; one with poles on the imaginary axis is not.
 
-    With python-flint the answer is certified, without it validated (docs/stability.md); none is an error.
+    With python-flint the answer is certified, without it validated (docs/stability.md).
 
     Of a `Loop` it is internal stability that is meant: a pole that controller and process cancel counts, too. To close
     the loop around L(s), ask `is_closed_loop_stable`.
