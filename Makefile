@@ -41,7 +41,7 @@ test-solutions: .venv/ready ## prove every cell of the solutions
 	$(python) -m pytest -n $(more) solutions
 
 test-all: .venv/ready ## prove everything with all variants and all draws, as once a week
-	LOOPBOOK_ALL=1 $(python) -m pytest -n $(more) -o bookledger_points=12 tests lib chapters solutions README.md
+	LOOPBOOK_ALL=1 $(python) -m pytest -n $(more) -o bookledger_mutation=true tests lib chapters solutions README.md
 
 test-alone: ## prove each package alone, with those it stands on, as once a week
 	$(PYTHON) tests/repository/alone.py

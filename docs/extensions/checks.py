@@ -42,7 +42,7 @@ def cells(verdict, formulas=in_html, equations=True):
     equation = f"({html.escape(verdict['equation'])})" if "equation" in verdict else ""
     label = f' aria-label="{html.escape(verdict["name"])}"' if "<math" in title else ""  # for readers of a screen
     parts = [
-        f'<td class="verdict {verdict["status"]}">{sign}&nbsp;{html.escape(word)}{more}',
+        f'<td class="verdict {verdict["status"].replace(" ", "-")}">{sign}&nbsp;{html.escape(word)}{more}',
         *([f'<td class="equation">{equation}'] if equations else []),
     ]
     if verdict["kind"] == "claim":

@@ -10,6 +10,7 @@ import html
 import json
 from itertools import pairwise
 from pathlib import Path
+from urllib.parse import quote
 
 import checks
 from docutils import nodes
@@ -207,32 +208,50 @@ def totals():
     for name, source in sources().items():
         numbers = [*counted[name].items(), ("", sum(counted[name].values()))]
         shown = "".join(
-            f'<td><a href="?source={name}{f"&amp;status={word}" if word else ""}">{number}</a>' if number else "<td>0"
+            f'<td><a href="?source={name}{f"&amp;status={quote(word)}" if word else ""}">{number}</a>'
+            if number
+            else "<td>0"
             for word, number in numbers
         )
         lines.append(f'<tr><th scope="row">{html.escape(source.title)}{shown}')
     sums = {word: sum(row[word] for row in counted.values()) for word in STATUSES}
-    shown = "".join(f'<td><a href="?status={word}">{number}</a>' for word, number in sums.items())
+    shown = "".join(f'<td><a href="?status={quote(word)}">{number}</a>' for word, number in sums.items())
     lines.append(f'<tr><th scope="row">all{shown}<td>{sum(sums.values())}</tbody></table></div>')
     meanings = "".join(
-        f'<dt class="{word}">{status.mark[0]} {word}<dd>{html.escape(status.meaning)}'
+        f'<dt class="{word.replace(" ", "-")}">{status.mark[0]} {word}<dd>{html.escape(status.meaning)}'
         for word, status in STATUSES.items()
     )
     return "\n".join(lines) + f'\n<dl class="statuses simple">{meanings}</dl>'
 
 
 def criteria():
-    """Return the criteria for words as a table: the word, what it means, and why."""
-    head = "".join(f'<th scope="col">{name}' for name in ("word", "means", "because"))
-    lines = [
-        f'<tr><th scope="row">{html.escape(c.word)}<td>{html.escape(c.meaning)}<td>{html.escape(c.reason)}'
-        for c in CRITERIA
+    """Return the criteria for words of degree, and the measures of words that compare, as two tables."""
+    words = [(c.word, ", ".join(c.degrees) or c.word, c.meaning, c.reason) for c in CRITERIA]
+    measures = [
+        (source.title, word, ", ".join(quantities))
+        for source in sources().values()
+        for word, quantities in source.language.measures.items()
     ]
     return "\n".join(
         [
-            '<div class="ledger-frame" tabindex="0" role="region" aria-label="criteria">',
-            '<table class="criteria"><caption>What words mean</caption>',
-            f"<thead><tr>{head}</thead><tbody>",
+            _words("What words of degree mean", ("criterion", "words of the books", "means", "because"), words),
+            _words("What comparisons are judged by", ("source", "what is compared", "by"), measures),
+        ]
+    )
+
+
+def _words(caption, head, rows):
+    """A table of words."""
+    lines = [
+        f'<tr><th scope="row">{first}{"".join(f"<td>{text}" for text in others)}'
+        for first, *others in (map(html.escape, row) for row in rows)
+    ]
+    return "\n".join(
+        [
+            f'<div class="ledger-frame" tabindex="0" role="region" aria-label="{caption}">',
+            f'<table class="criteria"><caption>{caption}</caption><thead><tr>',
+            *(f'<th scope="col">{name}' for name in head),
+            "</thead><tbody>",
             *lines,
             "</tbody></table></div>",
         ]

@@ -20,7 +20,7 @@ NUMBERS = {
     ],
 }
 BOOKS = Books({"walls": entries(EXAMPLE.read_text(encoding="utf-8")) | {"Example 3.1": NUMBERS}})
-REPORT = Source.open(EXAMPLE)["Example 2.1"].compare(Q=576, R=0.417, thicker=less(1, 2))
+REPORT = Source.open(EXAMPLE)["Example 2.1"].compare(Q=576, R=0.417, thicker=less(1, 2, "heat flow [W]"))
 
 
 def code(source, *outputs, **metadata):
@@ -39,8 +39,7 @@ def row(**changes):
     return checked(verdicts=[first | changes, *others])
 
 
-IMPORTS = code("from shelf import walls\nfrom bookledger import evidence\n"
-               "from bookledger.evidence import every, greater, less, positive")  # fmt: skip
+IMPORTS = code("from shelf import walls")
 GIVENS = code('example = walls["Example 3.1"]\nk, D, d = example.given("k", "D", "d")')
 CHECK = code("example.check(Q=wall.Q, R=D + d)", checked())
 GOOD = [IMPORTS, v4.new_markdown_cell("## Example 3.1 · a wall"), GIVENS, CHECK]
@@ -70,60 +69,19 @@ BROKEN = {
         ("not the results of the ledger", stored(code("", checked(verdicts=REPORT.data["verdicts"][:-1])))),
         ("not the results of the ledger", stored(code("", checked(verdicts=REPORT.data["verdicts"] * 2)))),
     ],
-    rules.checks_are_computed: [
-        ("not plain Python", with_code("%time example.check(Q=2)")),
+    rules.nothing_is_handed_back: [
         ("not computed", with_code("a, b = 2.04, 3\nexample.check(Q=a)")),
-        ("not computed", with_code("example.check(Q=(a := 2.04))")),
-        ("not computed", with_code("a: float = 2.04\nb = a\nexample.check(Q=-b)")),
-        ("not computed", with_code("example.check(Q=sum([2.04]))")),
-        ("not computed", with_code("for a in [2.04]:\n    example.check(Q=a)")),
-        ("another name", with_code("judge = example.check\njudge(Q=2.04)")),
-        ("2", with_code("example.check(2)")),
+        ("not computed", with_code("flow = 2", "example.check(Q=flow)")),
         ("-2.5", with_code("example.check(Q=-2.5)")),
         ("'stable'", with_code("example.check(wall='stable')")),
         ("True", with_code("example.check(stable=True)")),
         ("S(2)", with_code("example.check(Q=S(2))")),
         ("Rational(1, 2)", with_code("example.check(Q=Rational(1, 2))")),
-        ("sympy.Float('0.5')", with_code("example.check(Q=-sympy.Float('0.5'))")),
         ("Integer(3)", with_code("walls['Example 3.1'].check(Q=Integer(3) / 2)")),
         ("[1, 2]", with_code("example.check(roots=[1, 2])")),
-        ("oo", with_code("example.check(R=oo)")),
-        ("'Q': 2", with_code("example.check(**{'Q': 2})")),
-        ("flow", with_code("flow = 2", "example.check(Q=flow)")),
-        ("itself", with_code("example.check(Q=example['Q'].printed)")),
-        ("itself", with_code("example.check(Q=example.printed_value('Q'))")),
-        ("itself", with_code("told = example.printed_value('Q')", "example.check(Q=told)")),
-        ("itself", with_code("p = [example.printed_value('Q')]\nq = p[0]\nexample.check(Q=2 * q)")),
-    ],
-    rules.evidence_can_fail: [
-        ("of literals", with_code("example.check(Q=Q, large=greater(2, 1))")),
-        ("of literals", with_code("a, b = 2, 1", "greater(a, 3 * b)")),
-        ("of literals", with_code("every(less(Q, R), greater(2, 1, 'width'))")),
-        ("of literals", with_code("evidence.positive(3)")),
-        ("of literals", with_code("pair = [2, 1]", "greater(*pair)")),
-        ("of literals", with_code("greater(left=2, right=1)")),
-        ("with itself", with_code("greater(Q, Q)")),
-        ("with itself", with_code("again = Q", "evidence.equal(again, Q)")),
-        ("with itself", with_code("greater(2 * Q + 1, 2*Q+1)")),
-        ("with itself", with_code("greater(max(Q), min(Q))")),
-        ("put in order", with_code("less(*sorted([Q, R]))")),
-        ("made positive", with_code("positive(abs(Q))")),
-        ("chooses", with_code("greater(Q, R) if Q > R else less(Q, R)")),
-        ("turns", with_code("greater(Q, R).turned()")),
-        ("another name", with_code("from bookledger.evidence import greater as more")),
-        ("another name", with_code("from bookledger import evidence as judge")),
-        ("another name", with_code("import bookledger.evidence as judge")),
-        ("its making", with_code("from bookledger.evidence import Comparison")),
-        ("its making", with_code("from bookledger.evidence.comparisons import greater")),
-    ],
-    rules.no_truth_value_becomes_a_word: [
-        ("chooses", with_code('{1: "stable", 0: "not stable"}[Q < 2]')),
-        ("chooses", with_code('word = Q < 2 and "stable" or "not stable"')),
-        ("chooses", with_code('if Q < 2:\n    word = "stable"\nelse:\n    word = "not stable"')),
-        ("chooses", with_code('("worse", "better")[Q < 2]')),
-        ("into a word", with_code('word = "stable" if Q < 2 else "not stable"')),
-        ("into a word", with_code('example.check(a=f"{x} more" if x else "less")')),
-        ("words for", with_code('words = {True: "stable", False: "unstable"}')),
+        ("2 in a check", with_code("example.check(**{'Q': 2})")),
+        ("k in a check", with_code("example.check(Q=k)")),
+        ("given('k')", with_code("example.check(Q=example.given('k'))")),
     ],
     rules.no_number_of_the_book: [
         ("0.5 stands in walls Example 3.1", with_code("wall = Wall(depth=0.5)")),
@@ -140,24 +98,10 @@ BROKEN = {
 }
 ACCEPTED = {
     rules.checks_are_of_the_ledger: [stored(code("", checked(), checked()))],
-    rules.checks_are_computed: [
-        with_code(
-            "a, b = table.printed_value('a', 'b')",
-            "larger = greater(a, table.printed_value('c'), 'heat flow [W]')",
-            "claims.check(larger=larger, both=every({'a': greater(a, b, 'heat flow [W]')}))",
-        ),
+    rules.nothing_is_handed_back: [
         with_code("count = 0", "count += roots", "example.check(order=count)"),
-        with_code("example.check(Q=D / 2, H=k / (D*s + 1))"),
+        with_code("example.check(Q=D / 2, H=k / (D*s + 1), **{'R': f'{d} m'})"),
         with_code('exercise("1.1").check(a="setpoint", b=...)'),
-    ],
-    rules.evidence_can_fail: [
-        with_code("greater(Q, 0)", "less(1, Q)", "positive(R)", 'greater(*pair, "angle [rad]")'),
-        with_code("a = Q", "a = 2 * a", "greater(a, Q)"),
-        stored(code("def greater(a, b): return a > b"), code("greater(2, 1)")),
-    ],
-    rules.no_truth_value_becomes_a_word: [
-        with_code('label = name if name else "wall"', '("P", "PI")[-1]', "k if stable else 0", '{"a": 1, "b": 2}'),
-        stored(code('word = "hot" if T > 300 else "cold"', tags=["nbval-ignore-output"])),
     ],
     rules.no_number_of_the_book: [
         with_code("area = 2 * x**4 + roots[7] + y(t).diff(t, 4)"),

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import functools
 import importlib
-import inspect
 import json
 import re
 import tomllib
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -28,50 +25,29 @@ class Books:
     Attributes:
         written: the entries of each source by their names, read as plain TOML.
         stored: the checks of each notebook, by its name.
-        evidence: the module that notebooks import evidence from; it knows the criteria and kinds of its subject.
     """
 
     written: Mapping[str, Mapping[str, Written]] = field(default_factory=dict)
     stored: Mapping[str, list[dict[str, Any]]] = field(default_factory=dict)
-    evidence: str = "bookledger.evidence"
 
     @classmethod
     def at(cls, sources: Iterable[Path], notebooks: Iterable[Path], evidence: str) -> Self:
-        """Read the files of sources and notebooks, and let the subject register its criteria and kinds of evidence."""
+        """Read files of sources and notebooks, and let the module of evidence register the words that it knows."""
         importlib.import_module(evidence)
         written = {path.stem: entries(path.read_text(encoding="utf-8")) for path in sources}
         stored = {path.stem: checks(json.loads(path.read_text(encoding="utf-8"))) for path in notebooks}
-        return cls(written, stored, evidence)
+        return cls(written, stored)
 
     def checks_of(self, source: str, entry: str) -> list[dict[str, Any]]:
         """Return the checks of an entry."""
         every = (check for stored in self.stored.values() for check in stored)
         return [check for check in every if (check["source"], check["entry"]) == (source, entry)]
 
-    def assumptions(self, source: str) -> Counter[str]:
-        """Return how many results of a source rest on each assumption."""
-        rows = (row for entry in self.written[source].values() for row in entry.get("result", []))
-        return Counter(row["assuming"] for row in rows if row.get("status") == "reconstructed")
-
-    @functools.cached_property
-    def offered(self) -> set[str]:
-        """The names of the functions that make evidence."""
-        return {name for name in importlib.import_module(self.evidence).__all__ if name[0].islower()}
-
-    @functools.cached_property
-    def sides(self) -> dict[str, int]:
-        """How many of their arguments are values that are compared, by the names of those functions."""
-        module = importlib.import_module(self.evidence)
-        parameters = {
-            name: inspect.signature(getattr(module, name)).parameters
-            for name in self.offered - {"every", "some", "refused"}
-        }
-        return {name: 2 if len(own) > 2 else 1 for name, own in parameters.items()}
-
 
 def entries(text: str) -> dict[str, Written]:
-    """Return the entries of a source, without what it says about itself."""
-    return {name: entry for name, entry in tomllib.loads(text).items() if name != "source"}
+    """Return the entries of a source, without what it says about itself and for all of them."""
+    tables = tomllib.loads(text)
+    return {name: tables[name] for name in tables if name not in ("source", "assumption", "measure")}
 
 
 def printed_numbers(entry: Written) -> set[Fraction]:

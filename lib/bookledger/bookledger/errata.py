@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from bookledger.kinds import Claim
-from bookledger.statuses import STATUSES, Corrected, Damaged, Status, Unreproduced
+from bookledger.statuses import STATUSES, Corrected, Damaged, NotComputable, Status, Unreproduced
 
 if TYPE_CHECKING:
     from bookledger.results import Result
@@ -34,7 +34,7 @@ def listed(sources: Mapping[str, Source], status: type[Status], folder: str) -> 
 
     Arguments:
         sources: by name.
-        status: `Corrected`, `Unreproduced` or `Damaged`.
+        status: `Corrected`, `Unreproduced`, `NotComputable` or `Damaged`.
         folder: the address of the notebooks' folder, with a slash at its end.
 
     >>> from bookledger import EXAMPLE, Source
@@ -61,19 +61,21 @@ def listed(sources: Mapping[str, Source], status: type[Status], folder: str) -> 
 def _line(entry: Entry, row: Result, folder: str) -> str:
     place = f"{entry.name}, equation ({row.equation})" if row.equation else entry.name
     status, printed = row.status, row.printed
-    right = status.found
+    reason, link = f"{status.because}{_tried(status)}", _link(entry, folder)
     if isinstance(printed, Claim):
         says = "claims" if printed.says else "denies"
-        found = {Unreproduced: "We found: "}.get(type(status), "It should read: ") + right if right else ""
-        return f"- **{place}** {says}: {printed.text} {found} Reason: {status.because}. {_link(entry, folder)}"
+        found = {Unreproduced: "We found: ", NotComputable: ""}.get(type(status), "It should read: ")
+        right = "" if isinstance(status, NotComputable) else status.found
+        return f"- **{place}** {says}: {printed.text} {found}{right} Reason: {reason}. {link}".replace("  ", " ")
+    if isinstance(status, NotComputable):
+        return f"- **{place}**, {row.title}, `{printed.text}`: {reason}. {link}"
     verb = "reads" if isinstance(status, Damaged) else "prints"
-    if isinstance(status, Corrected):
-        verdict = f"{verb} `{printed.text}`, correct is `{right}`"
-    elif not right:
-        verdict = f"prints `{printed.text}`, which cannot be computed"
-    else:
-        verdict = f"prints `{printed.text}`, computed is `{right}`"
-    return f"- **{place}**, {row.title}: {verdict}: {status.because}. {_link(entry, folder)}"
+    right = f"correct is `{status.found}`" if isinstance(status, Corrected) else f"computed is `{status.found}`"
+    return f"- **{place}**, {row.title}: {verb} `{printed.text}`, {right}: {reason}. {link}"
+
+
+def _tried(status):
+    return f"; tried: {status.tried}" if isinstance(status, Unreproduced) else ""
 
 
 def _link(entry, folder):

@@ -8,15 +8,17 @@ It does nothing until the settings of pytest name both, files or folders:
     bookledger_sources = "ledger"       # TOML files
     bookledger_notebooks = "chapters"   # stored notebooks
     bookledger_evidence = "bookledger.evidence"    # the module that the notebooks import evidence from
-    bookledger_points = 6               # at how many random points formulas are compared
+    bookledger_mutation = true          # run the notebooks again, which takes a minute for a large one
 
-Then pytest collects of each source its entries: one that is malformed, that no notebook checks or whose status is not
-true fails with a sentence. Of each notebook it collects `rules.RULES`. It runs no notebook; nbval does.
+Then pytest collects of each source its entries and assumptions: an entry that is malformed or that no notebook checks
+fails with a sentence. Of each notebook it collects `rules.RULES`, and with the last setting `mutation`.
 """
 
 from __future__ import annotations
 
 import functools
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,7 +36,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addini("bookledger_sources", "ledgers as TOML files, or their folders", type="paths", default=[])
     parser.addini("bookledger_notebooks", "the notebooks that check them, or their folders", type="paths", default=[])
     parser.addini("bookledger_evidence", "the module of their evidence", default="bookledger.evidence")
-    parser.addini("bookledger_points", "at how many random points formulas are compared", default="6")
+    parser.addini("bookledger_mutation", "run them again with other givens and prints", type="bool", default=False)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -80,32 +82,56 @@ class Proof(pytest.Item):
 
 
 def _of_source(file):
-    """The entries of a source, none of which is read yet, each with what proves it."""
+    """The entries of a source, none of which is read yet, and its assumptions, each with what proves it."""
+    from bookledger import truth
     from bookledger.errors import LedgerError
     from bookledger.source import Source
 
     def prove(name):
-        from bookledger.truth import complaints
-
+        books = _books(file.config)
         try:
             source[name]
         except LedgerError as error:
             return [str(error).removeprefix(f"{source.name}, ")]
-        points = int(file.config.getini("bookledger_points"))
-        return [f"{name}: {complaint}" for complaint in complaints(source.name, name, _books(file.config), points)]
+        return [f"{name}: {complaint}" for complaint in truth.complaints(source.name, name, books)]
+
+    def prove_assumption(name):
+        return [f"assumption {name}: {complaint}" for complaint in truth.of_assumption(source, name)]
 
     try:
         source = Source.open(file.path)
     except LedgerError as error:
         raise file.CollectError(str(error)) from None
-    return [(name, functools.partial(prove, name)) for name in source.tables]
+    entries = [(name, functools.partial(prove, name)) for name in source.tables]
+    assumptions = source.language.assumptions
+    return entries + [(f"assumption {name}", functools.partial(prove_assumption, name)) for name in assumptions]
 
 
 def _of_notebook(file):
     """The rules for a notebook, which is not read yet, each with what proves it."""
     from bookledger.rules import RULES
 
-    return [(rule.__name__, lambda rule=rule: rule(_stored(file.path), _books(file.config))) for rule in RULES]
+    proofs = [(rule.__name__, lambda rule=rule: rule(_stored(file.path), _books(file.config))) for rule in RULES]
+    if file.config.getini("bookledger_mutation"):
+        proofs.append(("mutation", lambda: _mutated(file.path, file.config)))
+    return proofs
+
+
+def _mutated(path, config):
+    """What `mutation` complains about, in a process of its own."""
+    options = ["--sources", *_files(config)[0], "--notebooks", path, "--evidence", config.getini("bookledger_evidence")]
+    command = [sys.executable, "-X", "utf8", "-m", "bookledger.mutation", *options]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
+    complaints = done.stdout or (done.stderr if done.returncode else "")
+    return [line.removeprefix(f"{path.stem}, ") for line in complaints.splitlines()]
+
+
+def _files(config):
+    """The files of sources, and those of notebooks."""
+    return [
+        [file for path in config.getini(setting) for file in ([path] if path.is_file() else path.glob(f"*{suffix}"))]
+        for setting, (suffix, _) in _PROOFS.items()
+    ]
 
 
 #: What the settings name: the suffix of the files, and what is proved of each.
@@ -124,13 +150,5 @@ def _books(config) -> Books:
     from bookledger.books import Books
 
     if _BOOKS not in config.stash:
-        files = (
-            [
-                file
-                for path in config.getini(setting)
-                for file in ([path] if path.is_file() else path.glob(f"*{suffix}"))
-            ]
-            for setting, (suffix, _) in _PROOFS.items()
-        )
-        config.stash[_BOOKS] = Books.at(*files, config.getini("bookledger_evidence"))
+        config.stash[_BOOKS] = Books.at(*_files(config), config.getini("bookledger_evidence"))
     return config.stash[_BOOKS]

@@ -3,21 +3,40 @@
 from __future__ import annotations
 
 import keyword
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Self
 
 from bookledger.errors import LedgerError
 from bookledger.evidence.comparisons import without_gaps
+from bookledger.evidence.criteria import of_degree
 from bookledger.evidence.values import in_one_line
-from bookledger.kinds import KINDS, Claim, Number, Printed
-from bookledger.statuses import KEYS, Computed, Status, status_of
+from bookledger.kinds import KINDS, Claim, Formula, Name, Number, Printed
+from bookledger.statuses import KEYS, Assumption, Computed, Status, status_of
 from plainmath.tables import is_symbol, symbol, typeset
 from plainmath.validation import did_you_mean
 
 #: The sign of what does not hold, and the class under which a page shows it.
 FAILS = ("✗", "fails")
-_OF_A_RESULT = ("name", "label", "equation", "kind", "printed", "unit", "claim", "says", "status")
+_OF_A_RESULT = ("name", "label", "equation", "constant", "status")
+_OF_A_CLAIM = ("claim", "says", "about", "degree", "measure")
+_OF_A_PRINT = ("kind", "printed", "unit", "rounded_to")
 _TRUTH = {"true": True, "false": False}
+
+
+@dataclass(frozen=True)
+class Language:
+    """What a source declares for all of its results.
+
+    Attributes:
+        assumptions: by their names.
+        measures: the quantities by which the source judges a word, such as "faster", by the word.
+        real: the symbols of an entry that may have either sign.
+    """
+
+    assumptions: Mapping[str, Assumption] = field(default_factory=dict)
+    measures: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    real: str = ""
 
 
 @dataclass(frozen=True)
@@ -31,6 +50,7 @@ class Result:
         unit: of a number.
         printed: the number, formula, name or claim.
         status: what was done.
+        constant: why it does not depend on what the entry gives; empty where it does.
     """
 
     name: str
@@ -39,11 +59,13 @@ class Result:
     unit: str
     printed: Printed
     status: Status
+    constant: str = ""
 
     @classmethod
-    def read(cls, where: str, data: object) -> Self:
+    def read(cls, where: str, data: object, language: Language | None = None) -> Self:
         """Make a result of a TOML table, or raise LedgerError."""
-        known = [*_OF_A_RESULT, *KEYS]
+        language = language or Language()
+        known = [*_OF_A_RESULT, *_OF_A_CLAIM, *_OF_A_PRINT, *KEYS]
         if not isinstance(data, dict):
             raise LedgerError(f"{where}: a result is {data!r}, expected a table like {{ name = ..., printed = ... }}")
         for key, value in data.items():
@@ -57,10 +79,16 @@ class Result:
         where, name = f"{where}, {data['name']}", data["name"]
         if not name.isidentifier() or keyword.iskeyword(name):
             raise LedgerError(f"{where}: expected a name that can be an argument in Python, as Q or T_s")
-        printed = _claim(where, data) if "claim" in data else _printed(where, data)
+        for key in _OF_A_PRINT if "claim" in data else _OF_A_CLAIM:
+            if key in data:
+                raise LedgerError(f"{where}: a {'claim' if 'claim' in data else 'print'} has no use for {key!r}")
+        if "claim" in data and "label" in data:
+            raise LedgerError(f"{where}: a claim has no use for 'label'")
+        printed = _claim(where, data, language) if "claim" in data else _printed(where, data, language)
         told = {key: value for key, value in data.items() if key in KEYS}
-        status = status_of(where, printed, data.get("status", Computed.word), told)
-        return cls(name, data.get("label", ""), data.get("equation", ""), data.get("unit", ""), printed, status)
+        status = status_of(where, printed, data.get("status", Computed.word), told, language.assumptions)
+        texts = (data.get(key, "") for key in ("label", "equation", "unit"))
+        return cls(name, *texts, printed, status, data.get("constant", ""))
 
     @property
     def is_checked(self) -> bool:
@@ -82,30 +110,40 @@ class Result:
         return Verdict(self, self.printed.written(value, *self.status.others(self.printed)), how, value)
 
 
-def _claim(where, data):
+def _claim(where, data, language):
     """The claim of a TOML table."""
-    for key in ("printed", "kind", "unit", "label"):
-        if key in data:
-            raise LedgerError(f"{where}: a claim has no use for {key!r}")
     if not data["claim"].endswith("."):
         raise LedgerError(f"{where}: the claim is {data['claim']!r}, expected a sentence with a full stop")
+    if "about" not in data:
+        raise LedgerError(f"{where}: the claim needs 'about', the quantities that evidence for it names")
     says = data.get("says", "true")
     if says not in _TRUTH:
         raise LedgerError(f"{where}: says is {says!r}, expected true or false")
-    return Claim(data["claim"], _TRUTH[says])
+    about, degree, measured = (_several(data.get(key, "")) for key in ("about", "degree", "measure"))
+    for word in degree:
+        if not of_degree(word) or word not in data["claim"].lower():
+            raise LedgerError(f"{where}: the degree is {word!r}, expected a word of the claim that has a criterion")
+    for word in measured:
+        if word not in language.measures:
+            raise LedgerError(f"{where}: the measure is {word!r}, {did_you_mean(word, language.measures)}")
+    measures = tuple(measure for word in measured for measure in language.measures[word])
+    return Claim(data["claim"], _TRUTH[says], frozenset(about), degree, measures)
 
 
-def _printed(where, data):
-    """The number, formula or name of a TOML table."""
+def _several(text):
+    return tuple(part.strip() for part in text.split(";") if part.strip())
+
+
+def _printed(where, data, language):
+    """What a TOML table prints."""
     if "printed" not in data:
         raise LedgerError(f"{where}: a result has no 'printed': {data}")
-    if "says" in data:
-        raise LedgerError(f"{where}: what is not a claim has no use for 'says'")
     kind = data.get("kind", Number.kind)
     if kind not in KINDS:
         raise LedgerError(f"{where}: the kind is {kind!r}, {did_you_mean(kind, KINDS)}")
+    details = {Formula.kind: [language.real], Name.kind: []}
     try:
-        return KINDS[kind].read(data["printed"])
+        return KINDS[kind].read(data["printed"], *details.get(kind, [data.get("unit", ""), data.get("rounded_to", "")]))
     except ValueError as error:
         raise LedgerError(f"{where}: printed is {error}") from None
 

@@ -1,29 +1,23 @@
-"""Rules for the notebooks that check a ledger: no number of the book is typed, and no check can only succeed.
+"""Rules for the notebooks that check a ledger, as they are stored: no number of the book is typed.
 
-A rule takes a stored notebook and the books, and returns its complaints, a sentence for each.
+A rule takes a stored notebook and the books, and returns its complaints, a sentence for each. Whether what a notebook
+hands over is computed, no rule knows: `mutation` runs it again.
 """
 
 from __future__ import annotations
 
 import ast
-import builtins
-import copy
-import re
 from collections.abc import Callable
 from fractions import Fraction
+from itertools import chain
 from pathlib import PurePath
 
 from bookledger.books import Books, printed_numbers
-from bookledger.stored import Stored, checks, code, names, parsed, sections, tree, walk
+from bookledger.stored import Stored, checks, code, sections, tree, walk
 from plainmath.tables import is_symbol
 
-#: Functions that make a number of a literal, and names of constants: what consists of these alone is not computed.
+#: Functions that make a number of a literal.
 MAKERS = {"S", "sympify", "Rational", "Integer", "Float", "Fraction", "Decimal", "int", "float", "abs", "round"}
-CONSTANTS = MAKERS | {*vars(builtins)} | {"sympy", "sp", "np", "numpy", "math", "oo", "inf", "nan", "pi", "E", "I"}
-#: What holds of any values, once they are in order.
-OF_ORDER = {"greater", "less", "at_least", "at_most", "positive", "negative", "increasing", "decreasing"}
-#: The tag of a cell whose outputs nbval does not compare, as of one with sliders.
-NOT_COMPARED = "nbval-ignore-output"
 
 
 # Checks.
@@ -56,200 +50,37 @@ def _shown(row):
     return title, " ".join(f"{row['printed']} {row.get('unit', '')}".split())
 
 
-def checks_are_computed(stored: Stored, books: Books) -> list[str]:
-    """No argument of `.check(...)` is a literal, a name for a literal, or the printed value handed back."""
-    cells = [(label, tree(cell)) for label, cell in code(stored.notebook)]
-    modules = [module for _, module in cells]
-    literal, imported = CONSTANTS | _names_of_literals(modules), _imported(modules, books)
-    # a claim may be about printed values
-    compared = {module: _evidence_in(module, imported, books) for module in modules}
-    printed = _names_of_printed_values(compared)
-    hidden = [label for label, cell in code(stored.notebook) if parsed(cell.source) is None and ".check" in cell.source]
-    found = [f"{label}: a check in what is not plain Python" for label in hidden]
-    for label, module in cells:
-        calls = [n for n in walk(module) if isinstance(n, ast.Call) and getattr(n.func, "attr", "") == "check"]
-        uses = [n for n in walk(module) if isinstance(n, ast.Attribute) and n.attr == "check"]
-        if len(uses) > len(calls):
-            found.append(f"{label}: a check under another name")
-        of_ledger = [call for call in calls if not _answers_an_exercise(call)]
-        for argument in (a for call in of_ledger for a in [*call.args, *(keyword.value for keyword in call.keywords)]):
-            if names(argument) <= literal:
-                found.append(f"{label}: {ast.unparse(argument)} in a check is not computed")
-            if names(argument) & {"printed", "correct", "computed"} or names(argument, compared[module]) & printed:
-                found.append(f"{label}: {ast.unparse(argument)} checks the ledger against itself")
-    return found
-
-
-def _names_of_printed_values(compared):
-    """The method `printed_value`, and the names that are bound to what it returns, or to an expression with it."""
-    found = {"printed_value"}
-    for module, calls in compared.items():
-        for node in walk(module):
-            if isinstance(node, ast.Assign) and names(node.value, calls) & found:
-                found |= {name for target in node.targets for name in names(target)}
-    return found
-
-
-def _answers_an_exercise(call):
-    """Whether it is `exercise(...).check(...)`, which compares an answer with a key and nothing with a book."""
-    match call.func:
-        case ast.Attribute(value=ast.Call(func=ast.Name("exercise"))):
-            return True
-    return False
-
-
-def _names_of_literals(modules):
-    """The names that are bound to nothing but literals, directly or through other such names."""
-    bindings: list[tuple[set[str], set[str]]] = []  # what is bound, and what it is made of
-    for node in (n for module in modules for n in walk(module)):
-        match node:
-            case ast.Assign(targets=targets, value=value):
-                bindings += [(names(target), names(value)) for target in targets]
-            case ast.AnnAssign(target=target, value=ast.expr() as value) | ast.NamedExpr(target=target, value=value):
-                bindings.append((names(target), names(value)))
-            case ast.AugAssign(target=target, value=value):
-                bindings.append((names(target), names(target) | names(value)))
-            case ast.For(target=target, iter=value) | ast.comprehension(target=target, iter=value):
-                bindings.append((names(target), names(value)))
-    found = {name for bound, _ in bindings for name in bound}
-    while rest := {name for bound, made_of in bindings if not made_of <= found | CONSTANTS for name in bound} & found:
-        found -= rest
-    return found
-
-
-# Evidence.
-
-
-def evidence_can_fail(stored: Stored, books: Books) -> list[str]:
-    """No evidence is of literals, of a thing beside itself, or of what a condition or a sort has put in order."""
-    cells = [(label, tree(cell)) for label, cell in code(stored.notebook)]
-    modules = [module for _, module in cells]
-    literal, same, imported = CONSTANTS | _names_of_literals(modules), _other_names(modules), _imported(modules, books)
+def nothing_is_handed_back(stored: Stored, books: Books) -> list[str]:
+    """No argument of `.check(...)` is a literal or a given, or a name for nothing but these."""
+    cells = [(label, walk(tree(cell))) for label, cell in code(stored.notebook)]
+    nodes = [node for _, nodes in cells for node in nodes]
+    idle = {
+        part
+        for node in nodes
+        if isinstance(node, ast.Assign) and _is_idle(node.value)
+        for part in chain.from_iterable(map(walk, node.targets))
+    }
+    bound = [node for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
+    names = {node.id for node in bound if node in idle} - {node.id for node in bound if node not in idle}
     found = []
-    for label, module in cells:
-        calls = _evidence_in(module, imported, books)
-        for node in walk(module):
-            match node:
-                case ast.ImportFrom() | ast.Import():
-                    found += [f"{label}: {why}" for why in _hidden_evidence(node, books)]
-                case ast.IfExp(body=one, orelse=other) if all(
-                    _evidence_in(part, imported, books) for part in (one, other)
-                ):
-                    found.append(f"{label}: {ast.unparse(node)} chooses among evidence")
-                case ast.Attribute(attr="turned"):
-                    found.append(f"{label}: {ast.unparse(node)} turns evidence around")
-        found += [f"{label}: {ast.unparse(call)} {why}" for call in calls for why in _idle(call, books, literal, same)]
+    for label, node in ((label, node) for label, nodes in cells for node in nodes):
+        match node:  # an answer to an exercise("1.1") is compared with a key, and nothing with a book
+            case ast.Call(func=ast.Attribute(attr="check", value=ast.Name() | ast.Subscript()), keywords=keywords):
+                for value in (keyword.value for keyword in keywords):
+                    for part in value.values if isinstance(value, ast.Dict) else [value]:
+                        if _is_idle(part) or getattr(part, "id", "") in names:
+                            found.append(f"{label}: {ast.unparse(part)} in a check is not computed")
     return found
 
 
-def _hidden_evidence(node, books):
-    """What a statement imports of evidence so that no rule would know it by its name."""
-    module = getattr(node, "module", "") or ""
-    for alias in node.names:
-        *_, last = alias.name.split(".")
-        if "evidence" in module.split("."):
-            hidden = alias.asname or module != books.evidence or alias.name not in books.offered
-        else:
-            hidden = "evidence" in alias.name.split(".") and (alias.asname or last != "evidence")
-        if hidden:
-            yield f"{ast.unparse(alias)} is evidence under another name, or its making"
-
-
-def _idle(call, books, literal, same):
-    """Why a call of evidence cannot fail."""
-    starred = [side.value for side in call.args if isinstance(side, ast.Starred)]
-    named = [keyword.value for keyword in call.keywords if keyword.arg not in ("quantity", None)]
-    sides = starred or [*call.args[: books.sides[_called(call)]], *named]
-    written = [ast.unparse(_Renamed(same).visit(copy.deepcopy(side))) for side in sides]
-    if sides and all(names(side) <= literal for side in sides):
-        yield "is evidence of literals"
-    if _called(call) in OF_ORDER:  # the largest of several is never smaller than the smallest
-        written = [re.sub(r"^(max|min)\b", "", text) for text in written]
-    if len(sides) > 1 and len(set(written)) == 1:
-        yield "compares a thing with itself"
-    done = {_called(side) for side in sides if isinstance(side, ast.Call)}
-    if _called(call) in OF_ORDER and done & {"sorted", "abs", "Abs"}:
-        yield "has been put in order, or made positive, before it is compared"
-
-
-def _called(call):
-    """The last name of what is called."""
-    return getattr(call.func, "id", getattr(call.func, "attr", ""))
-
-
-def _imported(modules, books):
-    """The names that a notebook imports from the module of evidence."""
-    return {
-        alias.name
-        for node in (node for module in modules for node in walk(module))
-        if isinstance(node, ast.ImportFrom) and node.module == books.evidence
-        for alias in node.names
-    }
-
-
-def _evidence_in(part, imported, books):
-    """The calls of evidence in a piece of code, by the names that the notebook imports."""
-    return [
-        call
-        for call in walk(part)
-        if isinstance(call, ast.Call) and _called(call) in books.sides
-        if _called(call) in imported or (isinstance(call.func, ast.Attribute) and "evidence" in names(call.func.value))
-    ]
-
-
-def _other_names(modules):
-    """Names that are bound once, and to nothing but another name."""
-    bound: dict[str, list[str]] = {}
-    for node in (n for module in modules for n in walk(module)):
-        match node:
-            case ast.Assign(targets=[ast.Name(name)], value=ast.Name(other)):
-                bound.setdefault(name, []).append(other)
-            case ast.Name(id=name, ctx=ast.Store()):
-                bound.setdefault(name, []).append("")
-    return {
-        name: others[0] for name, others in bound.items() if len([o for o in others if o]) == 1 and len(others) == 2
-    }
-
-
-class _Renamed(ast.NodeTransformer):
-    """Writes the first name of everything."""
-
-    def __init__(self, same):
-        self.same = same
-
-    def visit_Name(self, node):
-        return ast.Name(self.same.get(node.id, node.id), node.ctx)
-
-
-def no_truth_value_becomes_a_word(stored: Stored, books: Books) -> list[str]:
-    """No cell whose outputs are compared chooses a text by a condition: evidence decides what a book says in words."""
-    found: list[str] = []
-    for label, cell in code(stored.notebook):
-        if NOT_COMPARED in cell.metadata.get("tags", []):
-            continue
-        for node in walk(tree(cell)):
-            match node:
-                case ast.IfExp(body=one, orelse=other) if _is_text(one) and _is_text(other):
-                    found.append(f"{label}: {ast.unparse(node)} turns a truth value into a word")
-                case ast.Dict(keys=[ast.Constant(bool()), *_], values=values) if all(map(_is_text, values)):
-                    found.append(f"{label}: {ast.unparse(node)} has words for truth values")
-                case ast.Subscript(value=ast.Dict(values=values)) if all(map(_is_text, values)):
-                    found.append(f"{label}: {ast.unparse(node)} chooses a word")
-                case ast.BoolOp(values=values) if any(map(_is_text, values)):
-                    found.append(f"{label}: {ast.unparse(node)} chooses a word")
-                case ast.If(body=[ast.Assign(value=one)], orelse=[ast.Assign(value=other)]) if _is_text(
-                    one
-                ) and _is_text(other):
-                    found.append(f"{label}: {ast.unparse(node.test)} chooses a word")
-                case ast.Subscript(value=ast.Tuple(parts) | ast.List(parts), slice=index) if all(
-                    map(_is_text, parts)
-                ) and not isinstance(index, ast.Constant | ast.UnaryOp | ast.Slice):
-                    found.append(f"{label}: {ast.unparse(node)} chooses a word")
-    return found
-
-
-def _is_text(node):
-    return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
+def _is_idle(node):
+    """Whether it is a literal, several of them, or what an entry gives."""
+    match node:
+        case ast.Tuple(parts) | ast.List(parts):
+            return all(map(_is_idle, parts))
+        case ast.Call(func=ast.Attribute(attr="given")):
+            return True
+    return _number(node) is not None or isinstance(node, ast.Constant)
 
 
 # Numbers.
@@ -337,8 +168,6 @@ def _quotient(parts):
 #: What a stored notebook must obey.
 RULES: tuple[Callable[[Stored, Books], list[str]], ...] = (
     checks_are_of_the_ledger,
-    checks_are_computed,
-    evidence_can_fail,
-    no_truth_value_becomes_a_word,
+    nothing_is_handed_back,
     no_number_of_the_book,
 )

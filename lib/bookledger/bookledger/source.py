@@ -6,7 +6,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
@@ -17,7 +17,9 @@ from bookledger.errors import Disagreement, LedgerError
 from bookledger.evidence.values import NUMBER, in_one_line, parse_formula
 from bookledger.kinds import Claim, Number
 from bookledger.report import LEFT, Report
-from bookledger.results import Result, Verdict
+from bookledger.results import Language, Result, Verdict
+from bookledger.statuses import Assumption
+from bookledger.units import unit_of
 from plainmath.tables import aligned, marked, symbol, typeset
 from plainmath.validation import did_you_mean
 
@@ -70,7 +72,7 @@ class Given:
     text: str
 
     @classmethod
-    def read(cls, where: str, text: object) -> Self:
+    def read(cls, where: str, text: object, real: str = "") -> Self:
         """Read a number with its unit, an expression or an equation, or raise LedgerError."""
         if not isinstance(text, str) or not text.strip():
             raise LedgerError(f'{where} is {text!r}, expected text in quotes, as "1.5 s" or "K/(T*s + 1)"')
@@ -78,7 +80,7 @@ class Given:
         if quantity := _QUANTITY.fullmatch(text):
             return cls(sympy.Rational(quantity["number"]), quantity["unit"] or "", text)
         try:
-            return cls(parse_formula(text), "", text)
+            return cls(parse_formula(text, real), "", text)
         except ValueError as error:
             raise LedgerError(f"{where}: {error}") from None
 
@@ -103,26 +105,41 @@ class Entry:
     book: str = ""
 
     @classmethod
-    def read(cls, source: str, name: str, data: object, book: str = "") -> Self:
-        """Make an entry of a TOML table, or raise LedgerError; `book` is the short title of its source."""
+    def read(cls, source: str, name: str, data: object, book: str = "", language: Language | None = None) -> Self:
+        """Make an entry of a TOML table, or raise LedgerError.
+
+        Arguments:
+            source, book: the name and the short title of the source.
+            name, data: of the entry.
+            language: what the source declares for all entries.
+        """
         where = f"{source}, {name}"
         if not isinstance(data, dict):
             raise LedgerError(f"{where}: the entry is {data!r}, expected a table")
-        known = ["title", "chapter", "given", "result", "misprint", "damage"]
+        known = ["title", "chapter", "real", "given", "result", "misprint", "damage"]
         for key in data:
             if key not in known:
                 raise LedgerError(f"{where}: the entry has the unknown key {key!r}, {did_you_mean(key, known)}")
         for key in ("title", "chapter"):
             if not isinstance(data.get(key), str) or not data[key].strip():
                 raise LedgerError(f"{where}: {key} is {data.get(key)!r}, expected text")
+        real = data.get("real", "")
+        if not isinstance(real, str):
+            raise LedgerError(f'{where}: real is {real!r}, expected symbols that may have either sign, as "K v"')
+        language = replace(language or Language(), real=real)
         given, result = data.get("given", {}), data.get("result", [])
         if not isinstance(given, dict) or not isinstance(result, list):
             raise LedgerError(f"{where}: expected `given` to be a table and `result` a list of tables")
-        inputs = {key: Given.read(f"{where}, given {key}", text) for key, text in given.items()}
-        results = tuple(Result.read(where, row) for row in result)
+        inputs = {key: Given.read(f"{where}, given {key}", text, real) for key, text in given.items()}
+        results = tuple(Result.read(where, row, language) for row in result)
         names = [row.name for row in results]
         if twice := sorted({name for name in names if names.count(name) > 1}):
             raise LedgerError(f"{where}: {', '.join(twice)} is a result twice, expected every name once")
+        about: dict[frozenset[str], Result] = {}
+        for row in results:
+            if isinstance(row.printed, Claim) and (other := about.setdefault(row.printed.about, row)) is not row:
+                two = f"{other.name} and {row.name} are about the same"
+                raise LedgerError(f"{where}: {two}, expected a quantity of its own for each claim")
         title, chapter = in_one_line(data["title"]), data["chapter"]
         slips = []
         for key in ("misprint", "damage"):
@@ -145,6 +162,18 @@ class Entry:
                 where = f"{self.source}, {self.name}"
                 raise LedgerError(f"{where}: {name!r} is not given, {did_you_mean(name, self.inputs)}")
         values = tuple(self.inputs[name].value for name in names)
+        return values[0] if len(values) == 1 else values
+
+    def quantity(self, *names: str) -> Any:
+        """Return numbers of the example with their units, as SymPy's quantities: what is computed from them has one.
+
+        Raises LedgerError for a name that the example does not give, and ValueError for a unit such as °C.
+
+        >>> from bookledger import EXAMPLE
+        >>> Source.open(EXAMPLE)["Example 2.1"].quantity("k")
+        3*watt/(5*kelvin*meter)
+        """
+        values = tuple(self.given(name) * unit_of(self.inputs[name].unit) for name in names)
         return values[0] if len(values) == 1 else values
 
     def as_printed(self, *names: str) -> Any:
@@ -258,6 +287,7 @@ class Source:
     title: str
     citation: str
     tables: Mapping[str, Any] = field(repr=False)
+    language: Language = field(default_factory=Language, repr=False)
     _read: dict[str, Entry] = field(default_factory=dict, compare=False)
 
     @classmethod
@@ -282,13 +312,23 @@ class Source:
         if not isinstance(head, dict) or set(head) != keys or not all(isinstance(head[key], str) for key in keys):
             raise LedgerError(f"{name}.toml: expected a table [source] with title and citation, and nothing else")
         title, citation = (in_one_line(head[key]) for key in ("title", "citation"))
-        return cls(name, title, citation, MappingProxyType(data))
+        assumptions, measures = data.pop("assumption", {}), data.pop("measure", {})
+        if not isinstance(assumptions, dict) or not isinstance(measures, dict):
+            raise LedgerError(f"{name}.toml: expected tables [assumption.NAME] and a table [measure]")
+        for word, measure in measures.items():
+            if not isinstance(measure, str) or not measure.strip():
+                raise LedgerError(f"{name}.toml: the measure of {word!r} is {measure!r}, expected quantities in quotes")
+        language = Language(
+            {key: Assumption.read(f"{name}.toml, assumption {key}", table) for key, table in assumptions.items()},
+            {word: tuple(part.strip() for part in measure.split(";")) for word, measure in measures.items()},
+        )
+        return cls(name, title, citation, MappingProxyType(data), language)
 
     def __getitem__(self, name: str) -> Entry:
         if not isinstance(name, str) or name not in self.tables:
             raise LedgerError(f"{self.name} has no entry {name!r}, {did_you_mean(name, self.tables)}")
         if name not in self._read:
-            self._read[name] = Entry.read(self.name, name, self.tables[name], self.title)
+            self._read[name] = Entry.read(self.name, name, self.tables[name], self.title, self.language)
         return self._read[name]
 
     def __iter__(self) -> Iterator[Entry]:

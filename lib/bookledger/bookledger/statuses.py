@@ -3,16 +3,59 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
 from bookledger.errors import LedgerError
-from bookledger.evidence.values import NUMBER
-from bookledger.kinds import Claim, Name, Number, Printed
+from bookledger.evidence.values import NUMBER, in_one_line
+from bookledger.kinds import Claim, Number, Printed
 from plainmath.validation import did_you_mean
 
-__all__ = ["STATUSES", "Status"]
+__all__ = ["STATUSES", "Assumption", "Status"]
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """What takes the place of inputs that a book does not print; one serves several results, with one margin.
+
+    Attributes:
+        text: the assumption.
+        parameters: how many values were chosen for the results that rest on it.
+        within: how far a number may lie from its print, absolute or in percent; empty for half a unit of its last digit.
+    """  # noqa: E501
+
+    text: str
+    parameters: int
+    within: str = ""
+
+    @classmethod
+    def read(cls, where: str, data: object) -> Self:
+        """Make an assumption of a TOML table, or raise LedgerError."""
+        if not isinstance(data, dict) or not {"text", "parameters"} <= set(data) <= {"text", "parameters", "within"}:
+            raise LedgerError(f"{where}: {data!r}, expected a table with text, parameters and perhaps within")
+        text, parameters, within = data["text"], data["parameters"], data.get("within", "1")
+        if not isinstance(text, str) or not text.strip():
+            raise LedgerError(f"{where}: text is {text!r}, expected a sentence without its full stop")
+        if not isinstance(parameters, int) or isinstance(parameters, bool) or parameters < 0:
+            raise LedgerError(f"{where}: parameters is {parameters!r}, expected how many values were chosen, as 2")
+        amount, percent = cls._margin(within) if isinstance(within, str) else ("", None)
+        if not NUMBER.fullmatch(amount) or not 0 < Fraction(amount) < (100 if percent else float("inf")):
+            raise LedgerError(f"{where}: within is {within!r}, expected a positive number, or a percentage below 100 %")
+        return cls(in_one_line(text), parameters, data.get("within", ""))
+
+    @staticmethod
+    def _margin(within):
+        return re.fullmatch(r"(.*?)(\s*%)?", within).groups()
+
+    def judge(self, printed: Printed, value: Any) -> str:
+        """Say how a number that rests on it agrees with its print; empty where it does not."""
+        if not self.within or not isinstance(printed, Number):
+            return printed.agrees(value)
+        amount, percent = self._margin(self.within)
+        margin = Fraction(amount) / 100 * abs(printed.value) if percent else Fraction(amount)
+        return "within" if abs(value - printed.value) <= margin else ""
 
 
 @dataclass(frozen=True)
@@ -32,7 +75,7 @@ class Status:
     is_checked: ClassVar[bool] = True
 
     @classmethod
-    def read(cls, where: str, printed: Printed, told: dict[str, str]) -> Self:
+    def read(cls, where: str, printed: Printed, told: Mapping[str, Any]) -> Self:
         """Make the status of what the ledger tells of it, or raise LedgerError."""
         own = {field.name: field.default is MISSING for field in fields(cls)}
         for key in KEYS:
@@ -105,51 +148,61 @@ class Observed(Status):
 
 
 @dataclass(frozen=True)
-class Reconstructed(Status):
-    """Computed from an assumption in place of an input that is not printed."""
+class Divided(Observed):
+    """A claim that holds by one measure and fails by another."""
 
-    word = "reconstructed"
-    meaning = "an input is not printed; one stated assumption supplies several results"
-    assuming: str
-    within: str = ""
+    word = "divided"
+    meaning = "true by one measure and false by another, where the book names none"
+    mark = ("±", "open")
 
     def _validate(self, where, printed):
-        is_word = isinstance(printed, Claim | Name)  # which has no margin
-        if is_word is bool(self.within):
-            verb = "has no use for" if is_word else "needs"
-            raise LedgerError(f"{where}: the status 'reconstructed' of a {printed.kind} {verb} 'within'")
-        if self.within:
-            self.margin(printed, where)
-
-    def margin(self, printed: Printed, where: str = "") -> Fraction:
-        """How far a number may lie from the print: `within`, absolute or in percent of the print."""
-        amount, percent = re.fullmatch(r"(.*?)(\s*%)?", self.within).groups()
-        if not isinstance(printed, Number) or not printed.is_finite:
-            raise LedgerError(f"{where}: {printed.text!r} cannot be reconstructed, expected a number")
-        if not NUMBER.fullmatch(amount) or not 0 < Fraction(amount) < (100 if percent else float("inf")):
-            raise LedgerError(
-                f"{where}: within is {self.within!r}, expected a positive number, or a percentage below 100 %"
-            )
-        if percent and not printed.value:
-            raise LedgerError(f"{where}: within is {self.within!r} of 0, expected a positive number")
-        return Fraction(amount) / 100 * abs(printed.value) if percent else Fraction(amount)
+        if not isinstance(printed, Claim):
+            raise LedgerError(f"{where}: the status 'divided' is of claims only, got a {printed.kind}")
 
     def judge(self, printed: Printed, value: Any) -> str:
-        """Say "within" where a number is within its margin; what is not a number agrees as usual."""
-        if not self.within:
-            return printed.agrees(value)
-        return "within" if abs(value - printed.value) <= self.margin(printed) else ""
+        """Say "evidence" where some of its cases hold and others do not."""
+        return "evidence" if value.divided else ""
+
+    def complaint(self, printed: Printed) -> str:
+        """That the measures agree."""
+        return f"is not divided: {printed.text}"
+
+
+@dataclass(frozen=True)
+class Reconstructed(Status):
+    """Computed from an assumption in place of inputs that are not printed, which more results confirm than it took."""
+
+    word = "reconstructed"
+    meaning = "an input is not printed; one stated assumption supplies more results than it has free parameters"
+    assuming: Assumption
+
+    def judge(self, printed: Printed, value: Any) -> str:
+        """Say how a value agrees within the margin of the assumption."""
+        return self.assuming.judge(printed, value)
 
     @property
     def note(self) -> str:
-        """The assumption."""
-        return f"reconstructed{f' to within {self.within}' if self.within else ''}, assuming {self.assuming}"
+        """The assumption, its free parameters and its margin."""
+        within = f" to within {self.assuming.within}" if self.assuming.within else ""
+        free = self.assuming.parameters
+        return f"{self.word}{within}, assuming {self.assuming.text} ({free} free parameter{'s' * (free != 1)})"
 
     def complaint(self, printed: Printed) -> str:
         """The margin that is missed."""
-        return (
-            f"is not within {self.within} of the printed {printed.text}" if self.within else super().complaint(printed)
-        )
+        if self.assuming.within and isinstance(printed, Number):
+            return f"is not within {self.assuming.within} of the printed {printed.text}"
+        return super().complaint(printed)
+
+
+@dataclass(frozen=True)
+class Fitted(Reconstructed):
+    """Computed from an assumption that was chosen for it."""
+
+    word = "fitted"
+    meaning = (
+        "an assumption was chosen for this very result, or has as many free parameters as results: nothing is confirmed"
+    )
+    mark = ("~", "open")
 
 
 class Contrary(Status):
@@ -174,7 +227,7 @@ class Contrary(Status):
         """Say how the value agrees with what was found; empty where it does not, or where the print holds too."""
         if printed.agrees(value):
             return ""
-        return "evidence" if isinstance(printed, Claim) else type(printed).read(self.found).agrees(value)
+        return "evidence" if isinstance(printed, Claim) else printed.like(self.found).agrees(value)
 
     @property
     def note(self) -> str:
@@ -189,7 +242,7 @@ class Contrary(Status):
 
     def others(self, printed: Printed) -> tuple[Printed, ...]:
         """What was found."""
-        return () if isinstance(printed, Claim) or not self.found else (type(printed).read(self.found),)
+        return () if isinstance(printed, Claim) or not self.found else (printed.like(self.found),)
 
 
 @dataclass(frozen=True)
@@ -214,19 +267,20 @@ class Damaged(Corrected):
 
 @dataclass(frozen=True)
 class Unreproduced(Contrary):
-    """The print and the computation differ, and nobody knows why."""
+    """All that it takes is known, and the computation differs from the print."""
 
     word = "unreproduced"
-    meaning = "all is known and it does not agree, or what it takes is not printed"
+    meaning = "all that it takes is known, and what is computed does not agree with the print; what was tried is said"
     mark = ("?", "open")
     key = "computed"
+    computed: str
     because: str
-    computed: str = ""  # what it takes may not be printed: then there is nothing to compare
+    tried: str
 
     @property
-    def is_checked(self) -> bool:
-        """Whether something can be computed."""
-        return bool(self.computed)
+    def note(self) -> str:
+        """The reason, as far as it is known, and what was tried."""
+        return f"{super().note}; tried: {self.tried}"
 
 
 @dataclass(frozen=True)
@@ -241,29 +295,44 @@ class Measured(Status):
 
     @property
     def note(self) -> str:
-        """Where it was measured."""
-        return f"measured: {self.because}"
+        """Where it was measured, or what is missing."""
+        return f"{self.word}: {self.because}"
 
 
+@dataclass(frozen=True)
+class NotComputable(Measured):
+    """The text does not print what it takes."""
+
+    word = "not computable"
+    meaning = "the text does not print what it takes to compute it"
+
+
+_ORDER = (
+    Computed, Quoted, Observed, Divided, Reconstructed, Fitted, Corrected, Damaged, Unreproduced, NotComputable,
+    Measured,
+)  # fmt: skip
 #: All statuses by their words, in the order in which pages count them.
-STATUSES: dict[str, type[Status]] = {
-    status.word: status
-    for status in (Computed, Quoted, Observed, Reconstructed, Corrected, Damaged, Unreproduced, Measured)
-}
+STATUSES: dict[str, type[Status]] = {status.word: status for status in _ORDER}
 KEYS = tuple(dict.fromkeys(field.name for status in STATUSES.values() for field in fields(status)))
 
 
-def status_of(where: str, printed: Printed, word: str, told: dict[str, str]) -> Status:
+def status_of(
+    where: str, printed: Printed, word: str, told: Mapping[str, str], assumptions: Mapping[str, Assumption]
+) -> Status:
     """Return the status that the ledger tells of a result, or raise LedgerError."""
     if word not in STATUSES:
         raise LedgerError(f"{where}: the status is {word!r}, {did_you_mean(word, STATUSES)}")
-    return STATUSES[word].read(where, printed, told)
+    if (name := told.get("assuming")) is None:
+        return STATUSES[word].read(where, printed, told)
+    if name not in assumptions:
+        raise LedgerError(f"{where}: no assumption {name!r} is declared, {did_you_mean(name, assumptions)}")
+    return STATUSES[word].read(where, printed, {**told, "assuming": assumptions[name]})
 
 
 def _value(where, key, text, printed):
     """See to it that a further value is of the kind of the print, and not coarser."""
     try:
-        value = type(printed).read(text) if not isinstance(printed, Claim) else None
+        value = printed.like(text) if not isinstance(printed, Claim) else None
     except ValueError as error:
         raise LedgerError(f"{where}: {key} is {error}") from None
     if isinstance(value, Number) and value.is_coarser_than(printed):

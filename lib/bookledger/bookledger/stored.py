@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import functools
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
@@ -74,11 +74,3 @@ def parsed(source: str) -> ast.Module | None:
 def walk(part: ast.AST) -> list[ast.AST]:
     """Return every node of a piece of code, of which each rule asks something."""
     return [*ast.walk(part)]
-
-
-def names(node: ast.AST, without: Collection[ast.AST] = ()) -> set[str]:
-    """Return the names and attributes used in an expression, except for some of its parts."""
-    if node in without:
-        return set()
-    own = {getattr(node, "id", getattr(node, "attr", ""))} if isinstance(node, ast.Name | ast.Attribute) else set()
-    return own.union(*(names(part, without) for part in ast.iter_child_nodes(node)))

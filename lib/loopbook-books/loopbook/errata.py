@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from bookledger.errata import listed
 from bookledger.source import Source
-from bookledger.statuses import Corrected, Damaged, Unreproduced
+from bookledger.statuses import Corrected, Damaged, NotComputable, Unreproduced
 
 INTRODUCTION = """\
 # Errata
@@ -17,12 +17,12 @@ with the correction and not with the print. What did not come out, and nobody kn
 [a page of its own](docs/unreproduced.md), and so is [what our copies have damaged](docs/damage.md).
 """
 UNREPRODUCED = """\
-# Not reproduced
+# Not reproduced, and not computable
 
-What did not come out as it is printed, though all that it takes is known, and what cannot be computed because the book
-does not print what it takes. Nothing here says that a book is wrong. `make execute` writes this page from the ledger,
-and a test proves each line that has a number or evidence: that is what is computed, and it does not agree with the
-print.
+The first list has what did not come out as it is printed, though all that it takes is known, and what was tried: it
+says that we did not find the reason, and not that a book is wrong. The second has results of which the text does not
+print what it takes to compute them. `make execute` writes this page from the ledger, and a test proves each line of
+the first list: that is what is computed, and it does not agree with the print.
 """
 DAMAGE = """\
 # Damage of our copies
@@ -40,8 +40,10 @@ def page(sources: Mapping[str, Source]) -> str:
 
 
 def unreproduced(sources: Mapping[str, Source]) -> str:
-    """Return the text of the page on what did not come out."""
-    return f"{UNREPRODUCED}\n{listed(sources, Unreproduced, '/chapters/')}"
+    """Return the text of the page on what did not come out, and what cannot be computed."""
+    tried, without_inputs = (listed(sources, status, "/chapters/") for status in (Unreproduced, NotComputable))
+    tried, without_inputs = (text.replace("## ", "### ") for text in (tried, without_inputs))
+    return f"{UNREPRODUCED}\n## Not reproduced\n\n{tried}\n## Not computable\n\n{without_inputs}"
 
 
 def damaged(sources: Mapping[str, Source]) -> str:

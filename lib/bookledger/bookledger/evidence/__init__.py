@@ -7,11 +7,12 @@ what a computation has to say about it, and a check shows both:
 holds: heat flow 288 W < 576 W
 
 What cannot fail is no evidence. A truth value is refused, because it shows no number; so is a list without cases.
-Words such as "much" or "about the same" have one meaning in all chapters, in `evidence.criteria`, and evidence that
-rests on one says so, and whether half or twice the limit would give another verdict.
+Words such as "much", "somewhat" or "in general" have one meaning in all chapters, in `evidence.criteria`, and evidence
+that rests on one says so, and whether half or twice the limit would give another verdict. The quantity that it names
+must be the one that the claim is about.
 """
 
-from bookledger.evidence.cases import Cases, decreasing, every, increasing, some
+from bookledger.evidence.cases import Cases, decreasing, every, increasing, most, some
 from bookledger.evidence.comparisons import (
     Comparison,
     Evidence,
@@ -29,10 +30,12 @@ from bookledger.evidence.comparisons import (
     negligible,
     nonzero,
     not_negligible,
-    not_substantially_less,
     positive,
     roughly_equal,
-    substantially_less,
+    somewhat_greater,
+    somewhat_less,
+    visibly_greater,
+    visibly_less,
     zero,
 )
 from bookledger.evidence.criteria import CRITERIA, Criterion
@@ -41,7 +44,7 @@ from bookledger.evidence.sides import EvidenceError
 
 __all__ = [
     "CRITERIA", "Cases", "Comparison", "Criterion", "Evidence", "EvidenceError", "Ratio", "Refusal", "about_equal",
-    "at_least", "at_most", "decreasing", "different", "equal", "every", "greater", "increasing", "less",
-    "much_greater", "much_less", "negative", "negligible", "nonzero", "not_negligible", "not_substantially_less",
-    "positive", "refused", "roughly_equal", "some", "substantially_less", "zero",
+    "at_least", "at_most", "decreasing", "different", "equal", "every", "greater", "increasing", "less", "most",
+    "much_greater", "much_less", "negative", "negligible", "nonzero", "not_negligible", "positive", "refused",
+    "roughly_equal", "some", "somewhat_greater", "somewhat_less", "visibly_greater", "visibly_less", "zero",
 ]  # fmt: skip

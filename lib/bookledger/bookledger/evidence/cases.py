@@ -1,4 +1,4 @@
-"""Evidence of several cases: that something always holds, or at least once, or grows from one case to the next."""
+"""Evidence of several cases: that something holds always, mostly or once, or grows from one case to the next."""
 
 from __future__ import annotations
 
@@ -8,13 +8,19 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from bookledger.evidence.comparisons import Comparison, Evidence, greater, less
+from bookledger.evidence.criteria import GENERALLY, MAY, Criterion
 from bookledger.evidence.sides import EvidenceError, Typeset, texts
 
 if TYPE_CHECKING:
-    from bookledger.evidence.criteria import Criterion
     from plainmath.types import Number
 
 _SHOWN = 4  # cases that a sentence tells
+#: Whether the cases that hold are enough, by their number and that of all cases.
+_ENOUGH = {
+    "every": lambda holding, cases: holding == cases,
+    "some": lambda holding, cases: holding > 0,
+    "most": lambda holding, cases: 2 * holding > cases,
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -23,28 +29,43 @@ class Cases(Evidence):
 
     Attributes:
         cases: the evidence of each, by its name.
-        all: whether each must hold; otherwise one is enough.
+        kind: how many of them must hold: "every", "some" or "most".
+        criterion: the word of degree that so many stand for, if it is one.
     """
 
     cases: tuple[tuple[str, Evidence], ...]
-    all: bool = True
+    kind: str = "every"
+    criterion: Criterion | None = None
 
     @property
     def criteria(self) -> tuple[Criterion, ...]:
-        """Those of all cases, each once."""
-        return tuple(dict.fromkeys(criterion for _, case in self.cases for criterion in case.criteria))
+        """Those of all cases and its own, each once."""
+        own = (self.criterion,) if self.criterion else ()
+        return tuple(dict.fromkeys([*(found for _, case in self.cases for found in case.criteria), *own]))
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Those of all cases."""
+        return frozenset().union(*(case.quantities for _, case in self.cases))
+
+    def _is_enough(self, holding):
+        return _ENOUGH[self.kind](sum(holding), len(self.cases))
 
     @property
     def holds(self) -> bool:
-        """Whether all cases hold, or one of them."""
-        return (all if self.all else any)(case.holds for _, case in self.cases)
+        """Whether enough of the cases hold."""
+        return self._is_enough(case.holds for _, case in self.cases)
+
+    @property
+    def divided(self) -> bool:
+        """Whether some of the cases hold and others do not."""
+        return len({case.holds for _, case in self.cases}) > 1
 
     @property
     def near(self) -> bool:
-        """Whether other verdicts on some of the near things would turn the verdict on all."""
-        to_hold, to_fail = (all, any) if self.all else (any, all)
-        may_hold = to_hold(case.holds or case.near for _, case in self.cases)
-        return may_hold and to_fail(not case.holds or case.near for _, case in self.cases)
+        """Whether other verdicts on the near things would turn the verdict on all."""
+        at_least = self._is_enough(case.holds and not case.near for _, case in self.cases)
+        return at_least is not self._is_enough(case.holds or case.near for _, case in self.cases)
 
     @property
     def room(self) -> float:
@@ -57,23 +78,24 @@ class Cases(Evidence):
         return any(case.probed for _, case in self.cases)
 
     def turned(self) -> Cases:
-        """With a counterexample to what should hold always; without what should hold once."""
+        """A counterexample to what always holds; nothing of what holds in some or most cases; all of what fails."""
         (name, first), *others = self.cases
-        if self.all:
+        if self.kind == "every" and self.holds:
             return replace(self, cases=((name, first.turned()), *others))
-        return replace(self, cases=tuple((name, case.turned() if case.holds else case) for name, case in self.cases))
+        cases = ((name, case.turned() if case.holds is self.holds else case) for name, case in self.cases)
+        return replace(self, cases=tuple(cases))
 
     def told(self, typeset: Typeset = str) -> str:
         """The deciding cases: counterexamples to what should hold always, examples of what should hold once.
 
         Of many those are told in which the numbers are closest.
         """
-        deciding = [pair for pair in self.cases if pair[1].holds is not self.all] or list(self.cases)
+        deciding = [pair for pair in self.cases if pair[1].holds is (self.kind != "every")] or list(self.cases)
         closest = sorted(range(len(deciding)), key=lambda place: deciding[place][1].room)[:_SHOWN]
         shown = [deciding[place] for place in sorted(closest)]
         told = [f"{name}: {case.told(typeset)}" if name else case.told(typeset) for name, case in shown]
         number, count = len(self.cases), sum(case.holds for _, case in self.cases)
-        if number > _SHOWN or (any(name for name, _ in self.cases) and not (self.all and self.holds)):
+        if number > _SHOWN or (any(name for name, _ in self.cases) and not (self.kind == "every" and self.holds)):
             told.insert(0, f"in {count} of {number} cases")
         return self._once("; ".join([*told, "..."] if len(deciding) > _SHOWN else told))
 
@@ -88,7 +110,7 @@ class Cases(Evidence):
     def data(self) -> dict[str, Any]:
         """The data of all cases."""
         cases = [({"case": name} if name else {}) | case.data for name, case in self.cases]
-        return {"kind": "every" if self.all else "some", "cases": cases, "holds": self.holds, "near": self.near}
+        return {"kind": self.kind, "cases": cases, "holds": self.holds, "near": self.near}
 
 
 @dataclass(frozen=True, repr=False)
@@ -127,7 +149,16 @@ def some(*cases: Evidence | Mapping[Any, Evidence]) -> Cases:
     >>> some({"K = 1": less(1, 2), "K = 2": less(3, 2)})
     holds: in 1 of 2 cases; K = 1: 1 < 2
     """
-    return Cases(_read(cases), all=False)
+    return Cases(_read(cases), "some", MAY)
+
+
+def most(*cases: Evidence | Mapping[Any, Evidence]) -> Cases:
+    """Evidence that more than half of the cases hold: for "in general"; otherwise as `every`.
+
+    >>> most({"K = 1": less(1, 2), "K = 2": less(3, 2), "K = 3": less(3, 4)})
+    holds: in 2 of 3 cases; K = 1: 1 < 2; K = 3: 3 < 4
+    """
+    return Cases(_read(cases), "most", GENERALLY)
 
 
 def _read(cases):

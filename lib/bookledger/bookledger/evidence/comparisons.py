@@ -16,7 +16,8 @@ from bookledger.evidence.criteria import (
     NEGLIGIBLE,
     ROUGHLY,
     SAME,
-    SUBSTANTIALLY,
+    SOMEWHAT,
+    VISIBLY,
     Criterion,
 )
 from bookledger.evidence.sides import (
@@ -52,7 +53,9 @@ class Evidence:
         probed: whether an equality was found at random points, and not proved.
         room: how far two numbers are apart, as a share of the larger one; infinite for all else.
         criteria: those it rests on.
-        data: all of it as JSON data, from which it can be judged again.
+        quantities: the names of what it is about.
+        divided: whether it has cases that hold, and others that do not.
+        data: all of it as JSON data.
     """
 
     holds: bool
@@ -60,6 +63,8 @@ class Evidence:
     probed: bool = False
     room: float = math.inf
     criteria: tuple[Criterion, ...] = ()
+    quantities: frozenset[str] = frozenset()
+    divided: bool = False
     data: dict[str, Any]
 
     def told(self, typeset: Typeset = str) -> str:
@@ -102,6 +107,11 @@ class Comparison(Evidence):
     def criteria(self) -> tuple[Criterion, ...]:
         """The criterion, if there is one."""
         return (self.criterion,) if self.criterion else ()
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """The quantity."""
+        return frozenset({self.quantity} - {""})
 
     @property
     def holds(self) -> bool:
@@ -175,7 +185,7 @@ class Ratio(Evidence):
     Attributes:
         left, right: the numbers.
         quantity, unit: what is compared.
-        criterion: SAME, ROUGHLY, MUCH, SUBSTANTIALLY or NEGLIGIBLE.
+        criterion: one of `_BY_RATIO`.
         contrary: whether it is said not to be so.
     """
 
@@ -189,7 +199,7 @@ class Ratio(Evidence):
     def __post_init__(self) -> None:
         if abs(self.left) == abs(self.right) == math.inf:
             raise EvidenceError("two infinite numbers have no ratio: expected numbers to compare")
-        if self.criterion in (ROUGHLY, MUCH, SUBSTANTIALLY) and min(self.left, self.right) < 0:
+        if self.criterion in (ROUGHLY, MUCH, SOMEWHAT) and min(self.left, self.right) < 0:
             one, other = texts([self.left, self.right])
             raise EvidenceError(f"{one} beside {other}: how much larger one is asks for numbers that are not negative")
 
@@ -197,6 +207,11 @@ class Ratio(Evidence):
     def criteria(self) -> tuple[Criterion, ...]:
         """The criterion."""
         return (self.criterion,)
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """The quantity."""
+        return frozenset({self.quantity} - {""})
 
     @property
     def holds(self) -> bool:
@@ -249,14 +264,16 @@ _BY_RATIO = {
     NEGLIGIBLE: lambda a, b, limit: abs(a) <= limit * abs(b) * _ROOM,
     ROUGHLY: lambda a, b, limit: order(a, b) == 0 or max(a, b) * _ROOM < (1 + limit) * min(a, b),
     MUCH: lambda a, b, limit: order(a, b) > 0 and a * _ROOM >= (1 + limit) * b,
-    SUBSTANTIALLY: lambda a, b, limit: order(a, b) < 0 and a <= limit * b * _ROOM,
+    VISIBLY: lambda a, b, limit: a > b and _apart(a, b) > limit * _ROOM,
+    SOMEWHAT: lambda a, b, limit: a > b and _apart(a, b) > SAME.limit * _ROOM and a * _ROOM < (1 + limit) * b,
 }
 _WORDS = {
     MUCH: "much larger than",
     NEGLIGIBLE: "negligible beside",
     SAME: "about equal to",
     ROUGHLY: "roughly equal to",
-    SUBSTANTIALLY: "substantially smaller than",
+    VISIBLY: "visibly larger than",
+    SOMEWHAT: "somewhat larger than",
 }
 
 
@@ -459,24 +476,42 @@ def much_less(left: Number, right: Number, quantity: str = "") -> Ratio:
     return _by_ratio(right, left, quantity, MUCH)
 
 
-def substantially_less(left: Number, right: Number, quantity: str = "") -> Ratio:
-    """Evidence that the first of two numbers is a fifth of the other one or less.
+def somewhat_greater(left: Number, right: Number, quantity: str = "") -> Ratio:
+    """Evidence that the first of two numbers is larger by more than 5 percent and by less than half of the other.
 
     Raises EvidenceError for negative numbers, of which no ratio speaks.
 
-    >>> substantially_less(3, 30, "area [K s]")
-    holds: area 3 K s substantially smaller than 30 K s (to a fifth or less)
+    >>> somewhat_greater(36, 30, "peak [K]")
+    holds: peak 36 K somewhat larger than 30 K (by less than half of the smaller one, and by more than the 5 % that are about equal)
+    """  # noqa: E501
+    return _by_ratio(left, right, quantity, SOMEWHAT)
+
+
+def somewhat_less(left: Number, right: Number, quantity: str = "") -> Ratio:
+    """Evidence that the second of two numbers is somewhat larger; otherwise as `somewhat_greater`.
+
+    >>> somewhat_less(10, 30, "peak [K]").holds
+    False
     """
-    return _by_ratio(left, right, quantity, SUBSTANTIALLY)
+    return somewhat_greater(right, left, quantity)
 
 
-def not_substantially_less(left: Number, right: Number, quantity: str = "") -> Ratio:
-    """Evidence that the first of two numbers is more than a fifth of the other one.
+def visibly_greater(left: Number, right: Number, quantity: str = "") -> Ratio:
+    """Evidence that the first of two numbers is the larger one by more than 5 percent of it: for "seems".
 
-    >>> not_substantially_less(20, 30, "area [K s]")
-    holds: area 20 K s not substantially smaller than 30 K s (to a fifth or less)
+    >>> visibly_greater(31, 30, "peak [K]")
+    does not hold: peak 31 K not visibly larger than 30 K (more than 5 % of the larger one apart)
     """
-    return substantially_less(left, right, quantity).turned()
+    return _by_ratio(left, right, quantity, VISIBLY)
+
+
+def visibly_less(left: Number, right: Number, quantity: str = "") -> Ratio:
+    """Evidence that the second of two numbers is visibly larger; otherwise as `visibly_greater`.
+
+    >>> visibly_less(12, 31.4, "cooling time [s]").holds
+    True
+    """
+    return visibly_greater(right, left, quantity)
 
 
 def within(value: Any, quantity: str, unit: str, criterion: Criterion) -> Comparison:

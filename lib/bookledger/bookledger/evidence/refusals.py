@@ -13,10 +13,17 @@ from bookledger.evidence.values import in_one_line
 
 @dataclass(frozen=True, repr=False)
 class Refusal(Evidence):
-    """What a function said when it declined; empty where it did not."""
+    """What a function said when it declined; empty where it did not.
+
+    Attributes:
+        sentence: of the error.
+        is_refused: whether it is said to decline.
+        function: the name of what was called, which is what the evidence is about.
+    """
 
     sentence: str
     is_refused: bool = True
+    function: str = ""
 
     @property
     def holds(self) -> bool:
@@ -24,6 +31,11 @@ class Refusal(Evidence):
         return bool(self.sentence) is self.is_refused
 
     near = False
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """What was asked for."""
+        return frozenset({self.function})
 
     def turned(self) -> Refusal:
         """The contrary: that it is accepted."""
@@ -55,10 +67,11 @@ def refused(function: Callable[..., Any], *arguments: Any, **named: Any) -> Refu
     """
     if not callable(function):
         raise EvidenceError(f"{function!r:.60} cannot be called: expected a function, and its arguments after it")
+    name = getattr(function, "__name__", type(function).__name__)
     try:
         function(*arguments, **named)
     except EvidenceError:
         raise
     except ValueError as error:
-        return Refusal(in_one_line(str(error)) or type(error).__name__)
-    return Refusal("")
+        return Refusal(in_one_line(str(error)) or type(error).__name__, function=name)
+    return Refusal("", function=name)

@@ -91,11 +91,12 @@ def _shortened(value, length=60):
     return text if len(text) <= length else text[: length - 3] + "..."
 
 
-def formula(value: object) -> Formula:
+def formula(value: object, real: str = "") -> Formula:
     """Return a computed formula as a SymPy expression or equation, in the symbols of `plainmath.expressions.parse`.
 
-    A symbol is known by its name alone. What a computation assumed about it is dropped, except that it is an integer:
-    otherwise a symbol declared as zero or even could make a false formula true.
+    A symbol is known by its name alone, and of either sign if it is among `real`. What a computation assumed about it
+    is dropped, except that it is an integer: otherwise a symbol declared as zero or even could make a false formula
+    true.
 
     Raises TypeError, saying what the value is instead, for anything else, and for one with rounded decimals, which
     no proof can start from.
@@ -112,45 +113,47 @@ def formula(value: object) -> Formula:
     for symbol in sorted(value.free_symbols, key=str):
         if symbol.name in {known.name for known in symbols}:
             raise TypeError(f"two different symbols named {symbol.name}: declare {symbol.name} once")
-        symbols[symbol] = _letter(symbol)
+        symbols[symbol] = _letter(symbol, real)
     value = value.xreplace(symbols)
     if not isinstance(value, sympy.Expr | sympy.Equality) or value.has(sympy.nan, sympy.zoo, sympy.AccumBounds):
         raise TypeError(f"not a formula, {_shortened(value)}")
     return value
 
 
-def _letter(symbol):
+def _letter(symbol, real):
     """The symbol that `parse` would read for the same name, but an integer where it was one."""
-    if symbol.is_integer:
+    if symbol.is_integer and symbol.name not in real.split():
         return sympy.Symbol(symbol.name, positive=True, integer=True)
-    letter = parse(symbol.name) if symbol.name.isidentifier() and not keyword.iskeyword(symbol.name) else symbol
+    letter = parse(symbol.name, real) if symbol.name.isidentifier() and not keyword.iskeyword(symbol.name) else symbol
     return letter if letter.is_Symbol else symbol
 
 
-def parse_formula(text: str) -> Formula:
+def parse_formula(text: str, real: str = "") -> Formula:
     """Read a formula, or an equation ``left = right``, as `plainmath.expressions.parse` does.
 
     Raises ValueError where the text is neither, and for an equation that says nothing, as ``x = x``.
     """
     left, equals, right = text.partition("=")
     if not equals:
-        return parse(text)
-    left, right = parse(left), parse(right)
+        return parse(text, real)
+    left, right = parse(left, real), parse(right, real)
     if sympy.expand(left - right) == 0:
         raise ValueError(f"the equation {text!r} says nothing: both sides are the same")
     return sympy.Eq(left, right, evaluate=False)
 
 
-def formula_agrees(value: object, printed: str) -> str:
+def formula_agrees(value: object, printed: str, real: str = "") -> str:
     """Say how a formula agrees with the printed one: ``"proved"``, ``"probed"``, or ``""`` where it does not.
 
-    A symbol is known by its name. An equation may have its terms on either side, but it may not be multiplied:
-    many a false equation is true times zero.
+    A symbol is known by its name; it is positive, or of either sign if it is among `real`. An equation may have its
+    terms on either side, but it may not be multiplied: many a false equation is true times zero.
 
     >>> formula_agrees(sympy.sympify("2*K/(2*T*s + 2)"), "K/(T*s + 1)")
     'proved'
+    >>> formula_agrees(sympy.sympify("Abs(K)"), "K"), formula_agrees(sympy.sympify("Abs(K)"), "K", real="K")
+    ('proved', '')
     """
-    value, printed = formula(value), parse_formula(printed)
+    value, printed = formula(value, real), parse_formula(printed, real)
     whole = {symbol.name: symbol for symbol in value.free_symbols if symbol.is_integer}
     return formulas_agree(value, printed.xreplace({x: whole.get(x.name, x) for x in printed.free_symbols}))
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from bookledger.evidence import again
-from bookledger.evidence.cases import Cases, every, some
+from bookledger.evidence.cases import Cases, every
 from bookledger.evidence.comparisons import Comparison, Evidence
 from bookledger.evidence.sides import EvidenceError, Typeset, numbers, rounded
 from bookledger.evidence.values import in_one_line
@@ -26,11 +25,18 @@ class Stability(Evidence):
         is_stable: whether it is said to be.
         unstable_poles: how many poles are in the right half-plane; nan for a system on the limit.
         margins: (gain margin, phase margin in degrees, Ms, gain reduction) of a stable loop; empty for what is none.
+        quantity: of what the stability is.
     """
 
     is_stable: bool
     unstable_poles: float
     margins: tuple[float, ...] = ()
+    quantity: str = "stability"
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Of what the stability is."""
+        return frozenset({self.quantity})
 
     @property
     def holds(self) -> bool:
@@ -68,19 +74,12 @@ class Stability(Evidence):
         }  # fmt: skip
 
 
-def _speaks_for(data):
-    poles = data["unstable_poles"]
-    return poles == "0" if data["is_stable"] else poles not in ("0", "nan")
-
-
-again.FURTHER["stability"] = _speaks_for
-
-
-def stable(system: object) -> Stability:
+def stable(system: object, quantity: str = "stability") -> Stability:
     """Evidence that a system or a loop is stable, with the margins of a loop.
 
     Arguments:
         system: a `Loop`, a `System` or a transfer function with numbers.
+        quantity: of what the stability is, where a book says it of more than one loop.
     Raises:
         ValueError: as `stability.unstable_poles`.
 
@@ -95,12 +94,12 @@ def stable(system: object) -> Stability:
     try:
         count = unstable_poles(system)
     except StabilityLimitError:
-        return Stability(True, math.nan)
+        return Stability(True, math.nan, quantity=quantity)
     except ArithmeticError as error:
         raise EvidenceError(f"whether {in_one_line(repr(system))[:60]} is stable is not known: {error}") from None
     if count or not hasattr(system, "margins"):
-        return Stability(True, count)
-    return Stability(True, 0, _margins(system))
+        return Stability(True, count, quantity=quantity)
+    return Stability(True, 0, _margins(system), quantity)
 
 
 def _margins(loop):
@@ -108,24 +107,29 @@ def _margins(loop):
     return found.gain_margin, found.phase_margin, found.Ms, found.gain_reduction
 
 
-def unstable(system: object) -> Stability:
+def unstable(system: object, quantity: str = "stability") -> Stability:
     """Evidence that a system or a loop has poles in the right half-plane; otherwise as `stable`.
 
     >>> from loopbook import s
     >>> unstable(1 / (s - 1))
     holds: unstable: 1 pole in the right half-plane
     """
-    return stable(system).turned()
+    return stable(system, quantity).turned()
 
 
-def good_stability(loop: object) -> Cases:
+def good_stability(loop: object, of: str = "") -> Cases:
     """Evidence that a loop has a gain margin of at least 2 and a phase margin of at least 30 degrees.
+
+    Arguments:
+        loop: as for `stable`.
+        of: the loop in a word, where a book says it of more than one.
 
     >>> from loopbook import PID, Loop, s
     >>> good_stability(Loop(1 / (s * (s + 1) ** 2), PID(0.5)))
     holds: gain margin 4 ≥ 2 (good stability: a gain margin of at least 2); phase margin 44.1° ≥ 30° (good stability: a phase margin of at least 30 degrees)
     """  # noqa: E501
-    found = stable(loop)
+    of = f" {of}" if of else ""
+    found = stable(loop, f"stability{of}")
     if found.unstable_poles > 0:
         return every(found)
     if found.holds and not found.margins:
@@ -133,16 +137,16 @@ def good_stability(loop: object) -> Cases:
     # on the limit of stability nothing is left
     gain, phase = numbers(*found.margins[:2]) if found.margins else (Fraction(1), Fraction(0))
     return every(
-        Comparison(gain, "≥", GAIN_MARGIN.limit, "gain margin", "", GAIN_MARGIN),
-        Comparison(phase, "≥", PHASE_MARGIN.limit, "phase margin", "°", PHASE_MARGIN),
+        Comparison(gain, "≥", GAIN_MARGIN.limit, f"gain margin{of}", "", GAIN_MARGIN),
+        Comparison(phase, "≥", PHASE_MARGIN.limit, f"phase margin{of}", "°", PHASE_MARGIN),
     )
 
 
-def poor_stability(loop: object) -> Cases:
+def poor_stability(loop: object, of: str = "") -> Cases:
     """Evidence that a loop misses what `good_stability` asks for, or is not stable.
 
     >>> from loopbook import PID, Loop, s
     >>> poor_stability(Loop(1 / (s * (s + 1) ** 2), PID(3))).holds
     True
     """
-    return some(*(case.turned() for _, case in good_stability(loop).cases))
+    return Cases(tuple((name, case.turned()) for name, case in good_stability(loop, of).cases), "some")
