@@ -11,5 +11,4 @@ def name_the_level(app, pagename, templatename, context, doctree):
 def setup(app):
     """Join Sphinx, behind the theme, which makes the tree."""
     app.connect("html-page-context", name_the_level, priority=900)
-    app.add_js_file("reach.js", defer="defer")
     return {"parallel_read_safe": True, "parallel_write_safe": True}

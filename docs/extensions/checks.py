@@ -60,7 +60,8 @@ def check(data, taken):
 
     Arguments:
         data: what a notebook stores.
-        taken: the names of the page's places; what has none yet gets its name here: the entry, and its equations.
+        taken: the names of the page's places; what has none yet gets its name here: the entry, and its equations. A
+            status is explained where the page has it first.
     """
     chapter = sources()[data["source"]][data["entry"]].chapter
     place, heading = ledger_anchor(data["source"], data["entry"]), html.escape(data["heading"], quote=False)
@@ -85,8 +86,18 @@ def check(data, taken):
             *(f"<p>{code(note)}</p>" for note in data["notes"]),
             f'<p><a href="../ledger/{chapter}.html#{place}">In the ledger</a></p>',
             "</details>",
+            *meanings(data, taken),
         ]
     )
+
+
+def meanings(data, taken):
+    """What the counts of a check mean, where the page has no check above it that has said so."""
+    new = [word for word in STATUSES if any(word == verdict["status"] for verdict in data["verdicts"])]
+    new = [name.removeprefix("means ") for name in fresh([f"means {word}" for word in new], taken)]
+    said = "; ".join(f"<strong>{word}</strong>: {html.escape(STATUSES[word].meaning)}" for word in new)
+    first = "A check compares what the book prints with what the cells above have found. " if fresh(["means"], taken) else ""
+    return [f'<p class="means">{first}{said[:1].upper()}{said[1:]}.</p>'] if said else []
 
 
 def fresh(names, taken):

@@ -16,7 +16,7 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(ROOT / "tests" / "site"), str(HERE.parent / "extensions")]
 
-from on_paper import WHOLE_BOOK  # noqa: E402
+from reading import WHOLE_BOOK  # noqa: E402
 
 import browser  # noqa: E402 - of tests/site/, which has just become a place to import from
 import repository  # noqa: E402 - of docs/extensions/
@@ -95,7 +95,7 @@ def link(site: Path) -> None:
         text = page.read_text(encoding="utf-8")
         if WHOLE_BOOK in text:
             up = "../" * (len(page.relative_to(site).parts) - 1)
-            text = text.replace(WHOLE_BOOK, f', <a href="{up}{FILE}">the whole book</a> (PDF)')
+            text = text.replace(WHOLE_BOOK, f'<span><a href="{up}{FILE}">The whole book</a> (PDF)</span>')
             page.write_text(text, encoding="utf-8")
 
 
