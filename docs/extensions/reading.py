@@ -18,8 +18,9 @@ CHOICES = {
     "show": ("Show", {"core": "the core", "all": "all"}),
     "code": ("Code", {"shown": "shown", "none": "hidden"}),
 }
-#: Minutes for a word, a line of code, what a cell shows, and a lesson, as a first reader has needed them.
-WORD, LINE, OUTPUT, LESSON = 1 / 90, 8 / 60, 1 / 4, 3
+OF_HOW_WE_KNOW = "What was reconstructed, what was found by a second route, and what the source leaves unsaid."
+#: Minutes for a word, a line of code, what a cell shows, a lesson, and to begin, as first readers have needed them.
+WORD, LINE, OUTPUT, LESSON, BEGIN = 1 / 75, 8 / 60, 1 / 4, 3, 5
 
 
 def is_further(section):
@@ -42,7 +43,7 @@ def fold(section):
         says = first.children
     else:
         below = [part[0].astext() for part in section if isinstance(part, nodes.section)]
-        says = [nodes.Text(" · ".join(below) or first.astext().partition(". ")[0].rstrip(".:") + " …")]
+        says = [nodes.Text(" · ".join(below) or OF_HOW_WE_KNOW)]
     section["classes"].append("further")
     section[1:1] = [raw('<details class="further"><summary>'), *says, raw("</summary>")]
     section.append(raw("</details>"))
@@ -76,7 +77,7 @@ def choices():
 
 def minutes(cells):
     """Return how long the core of a notebook takes with its code and its lessons, without exercises, to five minutes."""
-    inside, total = True, 0
+    inside, total = True, BEGIN
     for cell in cells:
         source = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
