@@ -63,15 +63,18 @@
   let judge = null;
   const waiting = new Set(); // exercises that show how far loading is
 
+  // The judge of this page. Until it is asked it loads nothing; but a Python that is there does not end.
+  async function makeJudge() {
+    const { Judge } = await import(new URL("judge.js", here));
+    const onProgress = (news) => waiting.forEach((exercise) => exercise.showLoading(news));
+    judge ??= new Judge({ version: known.version, onProgress });
+  }
+
   async function ask(request) {
-    if (!judge) {
-      let Judge;
-      try {
-        ({ Judge } = await import(new URL("judge.js", here)));
-      } catch {
-        throw new Error("What checks answers could not be loaded: look whether there is a network, and press again.");
-      }
-      judge ??= new Judge({ onProgress: (news) => waiting.forEach((exercise) => exercise.showLoading(news)) });
+    try {
+      if (!judge) await makeJudge();
+    } catch {
+      throw new Error("What checks answers could not be loaded: look whether there is a network, and press again.");
     }
     const reply = await judge.ask(request);
     if (judge.library && judge.library !== known.version) {
@@ -409,7 +412,7 @@
 
     // What helps is a file for the numbers of everybody, as long as no Python is there; else Python says it.
     async helped(request, fromFile) {
-      if (!this.student && !judge) {
+      if (!this.student && !judge?.library) {
         try {
           return fromFile(await help(this.number));
         } catch {
@@ -690,6 +693,7 @@
   if (byWeb) {
     for (const element of document.querySelectorAll(".exercise[data-exercise]")) exercises.push(new Exercise(element));
     for (const exercise of exercises) exercise.comeBack();
+    if (exercises.length && Object.keys(remembered().tried).length) makeJudge().catch(() => {});
   } else {
     // a browser with JavaScript keeps what is for others as a text
     for (const hidden of document.querySelectorAll(".exercise noscript")) {
