@@ -70,7 +70,9 @@ def made(chromium, site: Path, book: list[dict]) -> bytes:
         page.goto(f"{address}{book[0]['pages'][0]}")
         page.evaluate(ASSEMBLE, {"address": address, "parts": book, "title": TITLE, "about": ABOUT})
         page.add_style_tag(path=HERE / "look.css")
+        print("printing all pages: once for their numbers", flush=True)
         lines = page.evaluate(NUMBER, numbers(printed(page)))
+        print(f"and once more, with {len(lines)} lines of contents", flush=True)
         pdf = printed(page)
         page.close()
     return with_bookmarks(pdf, lines)
@@ -104,3 +106,4 @@ if __name__ == "__main__":
     with browser.opened() as chromium:
         (site / FILE).write_bytes(made(chromium, site, parts(site)))
     link(site)
+    print(f"{site / FILE} is made", flush=True)
