@@ -71,8 +71,9 @@ def choices():
     for name, (title, values) in CHOICES.items():
         buttons = "".join(f'<button type="button" name="{name}" value="{v}">{says}</button>' for v, says in values.items())
         parts.append(f'<span role="group" aria-label="{title}">{title} {buttons}</span>')
-    paper = '<span>Print <button type="button" data-print="core">the core</button><button type="button" data-print="all">all</button></span>'
-    return f'<p class="choices">{"".join(parts)}{paper}{WHOLE_BOOK}</p>'
+    paper = "".join(f'<button type="button" data-print="{v}">{says}</button>' for v, says in CHOICES["show"][1].items())
+    parts.append(f'<span role="group" aria-label="Print">Print {paper}</span>')
+    return f'<p class="choices">{"".join(parts)}{WHOLE_BOOK}</p>'
 
 
 def minutes(cells):
