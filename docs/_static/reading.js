@@ -33,7 +33,7 @@
   // What is chosen is in the element of the page, where its template puts what the browser keeps.
   function choose(name, value) {
     root.dataset[name] = value;
-    for (const button of document.querySelectorAll(`.choices [name="${name}"]`)) button.ariaPressed = String(button.value === value);
+    for (const button of document.querySelectorAll(`.switches [name="${name}"]`)) button.ariaPressed = String(button.value === value);
     if (name === "show") for (const part of document.querySelectorAll("details.further")) part.open = value === "all";
   }
 
@@ -60,13 +60,13 @@
     window.print();
   }
 
-  const choices = document.querySelector(".choices");
-  choices?.addEventListener("click", ({ target }) => {
+  const switches = document.querySelector(".switches");
+  switches?.addEventListener("click", ({ target }) => {
     if (target.name) keep(target.name, target.value);
     else if (target.dataset.print) print(target.dataset.print);
   });
-  choices?.classList.add("work");
-  if (choices) for (const [name, value] of [["show", "core"], ["code", "shown"]]) choose(name, root.dataset[name] ?? value);
+  switches?.classList.add("work");
+  if (switches) for (const [name, value] of [["show", "core"], ["code", "shown"]]) choose(name, root.dataset[name] ?? value);
   unfold();
   reach();
   window.addEventListener("hashchange", unfold);

@@ -73,7 +73,7 @@ def choices():
         parts.append(f'<span role="group" aria-label="{title}">{title} {buttons}</span>')
     paper = "".join(f'<button type="button" data-print="{v}">{says}</button>' for v, says in CHOICES["show"][1].items())
     parts.append(f'<span role="group" aria-label="Print">Print {paper}</span>')
-    return f'<p class="choices">{"".join(parts)}{WHOLE_BOOK}</p>'
+    return f'<p class="switches">{"".join(parts)}{WHOLE_BOOK}</p>'
 
 
 def minutes(cells):
