@@ -270,8 +270,9 @@
       );
       return moving.slice(0, moving[0]?.[0] ? 2 : 1).map(([label, points]) => {
         const name = label || axis.replace(/ *\[.*/, "");
-        const ends = [Math.min, Math.max].map((end) => value.says(end(...points.map(([, y]) => y))));
-        if (panel) return `${name} is between ${ends.join(" and ")}${units[1]}.`;
+        const [low, high] = [Math.min, Math.max].map((end) => end(...points.map(([, y]) => y)));
+        if (panel && (low < value.at(0) || high > value.at(1))) return `${name} leaves the picture.`;
+        if (panel) return `${name} is between ${value.says(low)} and ${value.says(high)}${units[1]}.`;
         const says = times.map(([from, word], k) => {
           const part = points.filter(([x]) => x >= from && x <= (times[k + 1]?.[0] ?? Infinity));
           const isStill = part.length < 3 || span(part, 1) < 0.005 * height;

@@ -31,7 +31,7 @@ SPANS = (32, 16, 8, 4, 2)  # positions of a slider, over which a line is tried t
 BETWEEN = -2  # in the place of the number of a line
 
 
-def sparse(column, lines, counts, along):
+def sparse(column, lines, counts, along, start):
     """Return the numbers of lines for all positions, with `BETWEEN` where a line is seen between two others.
 
     Arguments:
@@ -39,13 +39,15 @@ def sparse(column, lines, counts, along):
         lines: the letters of all lines.
         counts: how many positions each slider has.
         along: the number of the slider between whose positions a line may be.
+        start: the position of that slider at the beginning, where no line is between others.
     """
     grid = np.array(column).reshape(counts)
     across = np.moveaxis(grid, along, -1)
     for place in np.ndindex(across.shape[:-1]):
         row, first = across[place], 0
         while first < len(row) - 1:
-            ends = (min(first + span, len(row) - 1) for span in SPANS)
+            farthest = start if first < start else len(row) - 1
+            ends = (min(first + span, farthest) for span in SPANS)
             last = next((end for end in ends if end > first + 1 and is_seen(row[first : end + 1], lines)), first + 1)
             row[first + 1 : last] = BETWEEN
             first = last
@@ -100,7 +102,7 @@ def told(answers, counts, start):
         beside = [other for other in parts if other[:2] == (part.panel, "line")]
         found = part.kind == "area" and edges_of(key, beside, rows, lines.things)
         edges[key] = {"edges": [[*parts].index(edge) for edge in found]} if found else {}
-        columns[key] = [-1] if found else sparse([row[key] for row in rows], lines.things, counts, along)
+        columns[key] = [-1] if found else sparse([row[key] for row in rows], lines.things, counts, along, start[along])
     kept = sorted({line for numbers in columns.values() for line in numbers if line >= 0})
     anew = {line: number for number, line in enumerate(kept)}
     columns = {key: [anew.get(line, line) for line in numbers] for key, numbers in columns.items()}
