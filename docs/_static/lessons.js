@@ -6,8 +6,7 @@
 //   verdict, result, axis, word, image    which of the verdicts, results ... is seen: a number for each position of all
 //                    the sliders, the last one moving first, or one number where it is always the same
 //   items            lines, areas and points of the pictures; line is which of the lines it is, likewise, -1 for none,
-//                    or -2 for one between those of the nearest positions of the slider `along` that have one;
-//                    edges are the numbers of the two items between which an area lies
+//                    or -2 for one between those of the nearest positions of the slider `along` that have one
 //   lines            their shapes, see corners
 "use strict";
 
@@ -174,11 +173,7 @@
     }
 
     // The shape of an item at the present position, or at another one.
-    shape({ line: column, edges }, position = this.shown) {
-      if (edges) {
-        const [there, back] = edges.map((k) => this.shape(this.data.items[k], position).flat());
-        return [[...there, ...back.reverse()]];
-      }
+    shape({ line: column }, position = this.shown) {
       const { counts, along, lines } = this.data;
       const line = this.at(column, position);
       if (line !== BETWEEN) return corners(lines[line] ?? "");
@@ -197,7 +192,7 @@
       const isNew = (column) =>
         before === undefined || this.at(column) === BETWEEN || this.at(column) !== this.at(column, before);
       data.items.forEach((item, k) => {
-        if (!(item.edges ?? [k]).some((one) => isNew(data.items[one].line))) return;
+        if (!isNew(item.line)) return;
         const shape = this.shape(item);
         this.paths[k].setAttribute("d", path(shape, item.kind === "area"));
         if (this.legends[k]) this.legends[k].hidden = !shape.length;

@@ -32,7 +32,7 @@ def main():
         lesson, begin = lessons[name], time.perf_counter()
         why = reason(lesson, asked.all)
         if why:
-            text = as_text(recording(lesson.chapter, lesson.function, lesson.typed, asked.positions))
+            text = as_text(recording(lesson, asked.positions))
             lesson.file.parent.mkdir(exist_ok=True)
             lesson.file.write_text(text, encoding="utf-8", newline="\n")
             why = f"recorded, {len(text) / 1000:.0f} kB, because {why}"

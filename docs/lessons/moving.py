@@ -97,12 +97,8 @@ def told(answers, counts, start):
         """A number for each answer, or only one where it is always the same."""
         return alone([row[name] for row in rows])
 
-    along, columns, edges = int(np.argmax(counts)), {}, {}
-    for key, part in parts.items():
-        beside = [other for other in parts if other[:2] == (part.panel, "line")]
-        found = part.kind == "area" and edges_of(key, beside, rows, lines.things)
-        edges[key] = {"edges": [[*parts].index(edge) for edge in found]} if found else {}
-        columns[key] = [-1] if found else sparse([row[key] for row in rows], lines.things, counts, along, start[along])
+    along = int(np.argmax(counts))
+    columns = {key: sparse([row[key] for row in rows], lines.things, counts, along, start[along]) for key in parts}
     kept = sorted({line for numbers in columns.values() for line in numbers if line >= 0})
     anew = {line: number for number, line in enumerate(kept)}
     columns = {key: [anew.get(line, line) for line in numbers] for key, numbers in columns.items()}
@@ -118,10 +114,7 @@ def told(answers, counts, start):
             for number, panel in enumerate(panels)
         ],
         "items": [
-            {
-                "panel": p.panel, "kind": p.kind, "label": p.label, **inked(p.look), "line": alone(columns[key]),
-                **edges[key],
-            }
+            {"panel": p.panel, "kind": p.kind, "label": p.label, **inked(p.look), "line": alone(columns[key])}
             for key, p in parts.items()
         ],
         "labels": list(labels),
@@ -132,24 +125,6 @@ def told(answers, counts, start):
         "image": column("image"), "images": images.things,
         "lines": [lines.things[line] for line in kept],
     }  # fmt: skip
-
-
-def edges_of(area, candidates, rows, lines):
-    """The two lines between which an area lies at all positions, by what they are recognised by; or None."""
-    for edges in itertools.permutations(candidates, 2):
-        if all(is_area(*(lines[row[key]] if row[key] >= 0 else "" for key in (area, *edges))) for row in rows):
-            return edges
-    return None
-
-
-def is_area(area, *edges):
-    """Whether an area is the one between two lines."""
-    return all((area, *edges)) and shapes.apart(enclosed(*map(shapes.decoded, edges)), shapes.decoded(area)) < INVISIBLE
-
-
-def enclosed(one, other):
-    """The area between two lines, along one and back along the other."""
-    return [np.vstack([*one, *(piece[::-1] for piece in reversed(other))])]
 
 
 def alone(numbers):
@@ -224,18 +199,14 @@ def view(data, number=None):
         verdict=data["verdicts"][at(data["verdict"])],
         results=data["results"][at(data["result"])],
         axes=data["axes"][at(data["axis"])],
-        shapes=[shape_at(data, item, number) for item in data["items"]],
+        shapes=[shape_at(data, item["line"], number) for item in data["items"]],
         words=[data["words"][word] for word in data["groups"][at(data["word"])]],
         image=data["images"][at(data["image"])] if at(data["image"]) >= 0 else "",
     )
 
 
-def shape_at(data, item, number):
+def shape_at(data, column, number):
     """The letters of an item at a position, none where it is missing."""
-    if "edges" in item:
-        edges = (shapes.decoded(shape_at(data, data["items"][k], number)) for k in item["edges"])
-        return shapes.in_letters(enclosed(*edges))
-    column = item["line"]
     line = column[number] if isinstance(column, list) else column
     if line != BETWEEN:
         return data["lines"][line] if line >= 0 else ""

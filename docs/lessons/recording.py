@@ -17,7 +17,7 @@ import os
 import re
 import sys
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import nbformat
@@ -41,7 +41,7 @@ FEW = 10  # values of a slider that do not become fewer
 
 @dataclass(frozen=True)
 class Knob:
-    """A slider of a cell: its parameter, label and unit, all its values, the one at the start, and words for them."""
+    """A slider of a cell: its parameter, label and unit, values, the one at the start, words, what a text names."""
 
     name: str
     label: str
@@ -49,11 +49,12 @@ class Knob:
     values: tuple
     start: object
     words: bool = False
+    named: tuple = ()
 
     def thinned(self, stride):
-        """The same with every so many values only, the start among them."""
-        values = self.values[self.values.index(self.start) % stride :: stride]
-        return Knob(self.name, self.label, self.unit, values, self.start, self.words)
+        """The same with every so many values only, the start and those that a text names among them."""
+        even = self.values[self.values.index(self.start) % stride :: stride]
+        return replace(self, values=tuple(value for value in self.values if value in even or value in self.named))
 
     @property
     def shown(self):
@@ -250,19 +251,19 @@ def quantities_of(found):
     return told
 
 
-def recording(chapter, function, instead_of_typing=(), most=POSITIONS):
+def recording(lesson, most=POSITIONS):
     """Return the recording of a cell: what a lesson's page needs, and the cell's code as a number.
 
     Arguments:
-        chapter, function: where the cell is.
-        instead_of_typing: as of `knobs_of`.
+        lesson: a `Recorded`.
         most: positions of all the sliders together.
     Raises:
         ValueError: if the cell's first figure is not the one that the notebook stores.
     """
-    cells, at = place_of(chapter, function)
+    cells, at = place_of(lesson.chapter, lesson.function)
     call, labels = captured(needed(cells, at))
-    knobs = knobs_of(call, labels, instead_of_typing)
+    knobs = knobs_of(call, labels, lesson.typed)
+    knobs = [replace(knob, named=tuple(lesson.named.get(knob.name, ()))) for knob in knobs]
     known = {}
 
     def answer(values):
@@ -273,7 +274,7 @@ def recording(chapter, function, instead_of_typing=(), most=POSITIONS):
     alt = alt_at_start(call, knobs)
     stored = next((o.metadata["image/png"]["alt"] for o in cells[at].outputs if "image/png" in o.get("data", {})), alt)
     if alt != stored:
-        raise ValueError(f"{chapter}, {function}: the cell shows {stored!r}, and the recording {alt!r}")
+        raise ValueError(f"{lesson.chapter}, {lesson.function}: the cell shows {stored!r}, and the recording {alt!r}")
     while (size := len(text_of(data := data_of(thin := thinned(knobs, most), answer)))) > LARGEST and len(thin) > 1:
         most = int(0.9 * math.prod(len(knob.values) for knob in thin) * LARGEST / size)
     return {
