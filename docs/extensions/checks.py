@@ -14,6 +14,8 @@ from loopbook.ledger import sources
 MIME_TYPE = "application/vnd.loopbook.check+json"
 WIDE = 26  # letters of a formula that fit into a cell, on a phone too
 COLUMNS = ("verdict", "equation", "result", "book", "computed")
+#: Between two cases of some evidence, each with its name; the other semicolons of HTML end a sign such as "&lt;".
+CASE = re.compile(r"(?<!&lt)(?<!&gt)(?<!&amp); (?=[^<>;&]{1,40}: )")
 CLAIMS = ("verdict", "equation", "claim", "evidence")
 
 
@@ -46,6 +48,7 @@ def cells(verdict, formulas=in_html, equations=True):
         *([f'<td class="equation">{equation}'] if equations else []),
     ]
     if verdict["kind"] == "claim":
+        computed = CASE.sub("<br>", computed)
         denied = f" <small>({book})</small>" if book != "says so" else ""
         parts.append(f'<th scope="row" class="claim" colspan="2">{title}{denied}')
     else:
@@ -96,7 +99,11 @@ def meanings(data, taken):
     new = [word for word in STATUSES if any(word == verdict["status"] for verdict in data["verdicts"])]
     new = [name.removeprefix("means ") for name in fresh([f"means {word}" for word in new], taken)]
     said = "; ".join(f"<strong>{word}</strong>: {html.escape(STATUSES[word].meaning)}" for word in new)
-    first = "A check compares what the book prints with what the cells above have found. " if fresh(["means"], taken) else ""
+    first = (
+        "A check compares what the book prints with what the cells above have found. "
+        if fresh(["means"], taken)
+        else ""
+    )
     return [f'<p class="means">{first}{said[:1].upper()}{said[1:]}.</p>'] if said else []
 
 

@@ -62,7 +62,8 @@ def form(number, points, pictures, solutions):
         own, own_button = ' data-own="yes"', '<button type="button" class="own">Your own numbers</button>'
     return raw(
         f"""<div class="exercise docutils" data-exercise="{number}" data-rungs="{one.rungs}"{own}>
-<p class="state"><span class="points">{points}</span><span class="known"></span><span class="whose"></span>{own_button}</p>
+<p class="state"><span class="points">{points}</span><span class="known"></span>
+<span class="whose"></span>{own_button}</p>
 <div class="statement">
 {one.text}
 {pictures}

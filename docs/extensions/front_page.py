@@ -1,6 +1,7 @@
-"""What the front page shows of the book: its chapters with pictures and lessons, an exercise, and one result of the ledger.
+"""What the front page shows of the book: its chapters with pictures and lessons, an exercise, and a checked result.
 
-Directives and a role: ``chapter-list``, ``{hours}`4 5 6` ``, ``front-exercise 10.1``, and ``checked-result haugen; Example 7.4; T_i_in_minutes``.
+The role is ``{hours}`4 5 6` ``, the directives are ``chapter-list``, ``front-exercise 10.1``, and
+``checked-result haugen; Example 7.4; T_i_in_minutes``.
 """
 
 import html
@@ -26,7 +27,8 @@ class ChapterList(SphinxDirective):
     def run(self):
         readme = stored.ROOT / "README.md"
         self.env.note_dependency(str(readme))
-        rows = re.findall(r"^\| \[(.+)\]\(chapters/(\w+)\.ipynb\) \| (.+) \| (.+) \|$", readme.read_text("utf-8"), re.MULTILINE)
+        row = re.compile(r"^\| \[(.+)\]\(chapters/(\w+)\.ipynb\) \| (.+) \| (.+) \|$", re.MULTILINE)
+        rows = row.findall(readme.read_text("utf-8"))
         if not rows:
             raise self.error("the README has no table of chapters")
         return [nodes.raw("", f'<ol class="chapters">{"".join(tile(*row) for row in rows)}</ol>', format="html")]
@@ -66,21 +68,17 @@ class FrontExercise(SphinxDirective):
 
     def run(self):
         number = self.arguments[0]
-        chapter, outputs = self.found(number)
+        chapter = exercise_forms.pages().get(number)
+        if not chapter:
+            raise self.error(f"no chapter shows exercise {number}")
+        self.env.note_dependency(str(stored.ROOT / "chapters" / f"{chapter}.ipynb"))
+        cells = single_figures.cells_of(chapter)
+        outputs = next(cell["outputs"] for cell in cells if cell["source"] == f'exercise("{number}")')
         statement = exercise_forms.sheet(number).question.statement
         pictures = stored.pictures(outputs).replace("<img ", '<img loading="lazy" ')
         form = exercise_forms.form(number, statement.points, pictures, f"solutions/{chapter}.html")
         link = f"[In its chapter](chapters/{chapter}.ipynb#exercise-{slug(number)})"
         return self.parse_text_to_nodes(f"**{statement.heading}.** {link}\n\n{form}")
-
-    def found(self, number):
-        """The chapter of an exercise, and what its cell shows."""
-        for file in sorted((stored.ROOT / "chapters").glob("*.ipynb")):
-            for cell in stored.stored(file)["cells"]:
-                if cell["cell_type"] == "code" and re.match(rf'exercise\("{re.escape(number)}"\)$', cell["source"]):
-                    self.env.note_dependency(str(file))
-                    return file.stem, cell["outputs"]
-        raise self.error(f"no chapter shows exercise {number}")
 
 
 class CheckedResult(SphinxDirective):

@@ -1,4 +1,4 @@
-"""How a chapter is read: its core or all of it, on the screen and on paper, with its code or without, and how long it takes.
+"""How a chapter is read: its core or all of it, on the screen and on paper, with its code or without, in what time.
 
 A further section is folded below its heading, with the line that says what it holds. `_static/reading.js` switches what
 is shown, and `_static/print.css` is the look on paper.
@@ -20,7 +20,7 @@ CHOICES = {
 }
 OF_HOW_WE_KNOW = "What was reconstructed, what was found by a second route, and what the source leaves unsaid."
 #: Minutes for a word, a line of code, what a cell shows, a lesson, and to begin, as first readers have needed them.
-WORD, LINE, OUTPUT, LESSON, BEGIN = 1 / 75, 8 / 60, 1 / 4, 3, 5
+WORD, LINE, OUTPUT, LESSON, BEGIN = 1 / 75, 1 / 10, 1 / 4, 3, 5
 
 
 def is_further(section):
@@ -69,7 +69,8 @@ def choices():
     """The line of what a reader can choose, as HTML; without a script nobody sees it."""
     parts = []
     for name, (title, values) in CHOICES.items():
-        buttons = "".join(f'<button type="button" name="{name}" value="{v}">{says}</button>' for v, says in values.items())
+        button = f'<button type="button" name="{name}" value='
+        buttons = "".join(f'{button}"{value}">{says}</button>' for value, says in values.items())
         parts.append(f'<span role="group" aria-label="{title}">{title} {buttons}</span>')
     paper = "".join(f'<button type="button" data-print="{v}">{says}</button>' for v, says in CHOICES["show"][1].items())
     parts.append(f'<span role="group" aria-label="Print">Print {paper}</span>')
@@ -77,7 +78,7 @@ def choices():
 
 
 def minutes(cells):
-    """Return how long the core of a notebook takes with its code and its lessons, without exercises, to five minutes."""
+    """Return how long the core of a notebook takes with code and lessons, without exercises, to five minutes."""
     inside, total = True, BEGIN
     for cell in cells:
         source = "".join(cell["source"])
@@ -88,7 +89,7 @@ def minutes(cells):
         elif inside:
             shown = [output for output in cell["outputs"] if "data" in output]
             is_read = FOLDED not in cell["metadata"].get("tags", [])
-            total += LESSON if has_sliders(source) else OUTPUT * len(shown) + is_read * LINE * source.count("\n")
+            total += LESSON if has_sliders(source) else OUTPUT * len(shown) + is_read * LINE * len(source.splitlines())
     return 5 * round(total / 5)
 
 
@@ -102,9 +103,11 @@ def on_the_sheets(title):
 
 
 def add_title(app, pagename, templatename, context, doctree):
-    """Put the title of a page on its sheets."""
+    """Put the title of a page on its sheets, and say of the captions at the side of which level they are."""
     if title := context.get("title"):
         context["metatags"] = context.get("metatags", "") + on_the_sheets(title)
+    if tree := context.get("furo_navigation_tree"):
+        context["furo_navigation_tree"] = tree.replace('role="heading"', 'role="heading" aria-level="2"')
 
 
 def setup(app):
@@ -112,5 +115,5 @@ def setup(app):
     app.add_css_file("print.css", media="print", priority=900)  # the last word, behind loopbook.css
     app.add_js_file("reading.js", loading_method="defer")
     app.connect("doctree-read", mark)
-    app.connect("html-page-context", add_title)
+    app.connect("html-page-context", add_title, priority=900)  # behind the theme, which makes the tree
     return {"parallel_read_safe": True, "parallel_write_safe": True}

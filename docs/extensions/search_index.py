@@ -28,15 +28,6 @@ GREEK = {
     "ω": "omega", "Ω": "omega",
 }  # fmt: skip
 LETTERS = {name: letter for letter, name in reversed(GREEK.items())} | {"Delta": "Δ", "Omega": "Ω"}
-COMMON = {
-    "a", "an", "and", "are", "as", "at", "be", "by", "for", "from", "has", "in", "is", "it", "its", "of", "on", "or",
-    "that", "the", "this", "to", "with",
-}  # fmt: skip
-ASKING = {
-    "about", "any", "between", "can", "could", "did", "difference", "do", "doe", "does", "explain", "find", "get", "have",
-    "how", "i", "me", "mean", "much", "my", "need", "should", "so", "tell", "there", "too", "use", "want", "was", "we",
-    "what", "when", "where", "which", "who", "why", "will", "would", "you",
-}  # fmt: skip
 LEFT_OUT = {"figures", "ledger"}  # the gallery repeats the chapters, and the ledger has a search of its own
 UNSAID = "math|svg|script|style|noscript|canvas|button|select|template"  # elements of a page that hold no sentences
 UNREAD = (
@@ -64,6 +55,10 @@ def words(text):
 
 def singular(word):
     return word[:-1] if len(word) > 3 and word.endswith("s") and word[-2] not in "sui0123456789" else word
+
+
+#: What says nothing of what is asked: the words on lines of search_words.txt that end in "=".
+COMMON = {word for line in WORDS.read_text("utf-8").splitlines() if line.endswith("=") for word in words(line)}
 
 
 def spoken(latex):
@@ -186,11 +181,11 @@ def aliases(text):
         ValueError: a line has no "=".
 
     >>> aliases("ZN = Ziegler Nichols\\nroot locus = poles ! The books have none.")
-    [['zn', ['ziegler nichol'], ''], ['root locu', ['pole'], 'The books have none.']]
+    [['zn', ['ziegler nichol'], ''], ['root locus', ['pole'], 'The books have none.']]
     """
     found = []
     for line in text.splitlines():
-        if not line.strip() or line.startswith("#"):
+        if not line.strip() or line.startswith("#") or line.endswith("="):
             continue
         line, _, note = line.partition(" ! ")
         typed, sign, said = line.partition("=")
@@ -198,7 +193,7 @@ def aliases(text):
             raise ValueError(f"search_words.txt has the line {line!r}: expected 'what one types = what the book says'")
         meant = [" ".join(words(part)) for part in said.split(",")]
         for part in typed.split(","):
-            one = " ".join(word for word in words(part) if word not in COMMON | ASKING)
+            one = " ".join(word for word in words(part) if word not in COMMON)
             found.append([one, [other for other in meant if other != one], note.strip()])
     return found
 
@@ -243,7 +238,7 @@ def index(pages, titles):
             [page, place, title, above if above != titles[names[page]] else ""]
             for page, place, title, above, *_ in whole
         ],
-        "common": " ".join(sorted(COMMON | ASKING)),
+        "common": " ".join(sorted(COMMON)),
         "words": " ".join(ordered),
         "entries": " ".join(postings),
         "places": places,

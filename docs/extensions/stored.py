@@ -19,8 +19,8 @@ import nbformat
 import permanent
 import reading
 import slugs
-from lazy_figures import is_wide
 from lessons import of_cell
+from light import is_wide
 from nbformat.v4.rwbase import rejoin_lines
 from sphinx import addnodes
 from sphinx.util.matching import Matcher

@@ -7,7 +7,7 @@
 //   title, about   what is on the first sheet
 async ({ address, parts, title, about }) => {
   const SCREEN = "script, noscript, button, form, details.check, p.means, details.hide, .headerlink, .lesson-controls, p.opening, p.switches, p.functions, "
-    + "p.slider-note, p.exercise-links, .content-icon-container";
+    + "p.exercise-links, .content-icon-container";
   const keyOf = (name) => name.replace(/\.html$/, "").replace(/[^\w]+/g, "-");
   const pages = new Map();
   for (const name of parts.flatMap((part) => part.pages)) {

@@ -386,7 +386,9 @@ class TestOwnNumbers:
         assert reader.requests == []
         form.get_by_role("button", name="Show the numbers of Noor").click()
         expect(form.says).to_have_text("These are the numbers of Noor.")
-        expect(reader.page.get_by_text("numbers of Noor", exact=True)).to_have_count(reader.page.locator("button.own").count())  # of all cards at once
+        expect(reader.page.get_by_text("numbers of Noor", exact=True)).to_have_count(
+            reader.page.locator("button.own").count()
+        )  # of all cards at once
         expect(reader.page.get_by_text("everybody's numbers")).to_have_count(0)
 
     def test_the_first_answer_under_other_numbers_changes_all_cards(self, reader):
@@ -396,7 +398,9 @@ class TestOwnNumbers:
         form = reader.exercise("10.1")
         form.check(K="1.5")
         expect(form.says).to_have_text("These are the numbers of Noor. Answer these.")
-        expect(reader.page.get_by_text("numbers of Noor", exact=True)).to_have_count(reader.page.locator("button.own").count())
+        expect(reader.page.get_by_text("numbers of Noor", exact=True)).to_have_count(
+            reader.page.locator("button.own").count()
+        )
 
     def test_no_name_is_said_and_nothing_changes(self, reader):
         reader.go()

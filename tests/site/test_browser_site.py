@@ -109,7 +109,7 @@ class TestSite:
         expect(said).to_contain_text(" of ")
         first = rows.count()
         assert first
-        reader.page.get_by_label("What was done").select_option("corrected")
+        reader.page.get_by_label("Verdict").select_option("corrected")
         reader.page.get_by_label("Search", exact=True).last.fill("exp(-tau*s)")
         expect(rows).not_to_have_count(first)
         reader.page.get_by_role("button", name="Start again").click()
