@@ -83,7 +83,7 @@ def check(data, taken):
             f'<details class="check" id="{check_anchor(data["source"], data["entry"])}">',
             f"<summary>{sign} <strong>{heading}</strong>: {html.escape(data['counts'])}</summary>",
             '<div class="table" tabindex="0">',
-            f"<table><thead><tr>{head}</thead><tbody>",
+            f'<table class="results"><thead><tr>{head}</thead><tbody>',
             *rows,
             "</table></div>",
             *(f"<p>{code(note)}</p>" for note in data["notes"]),

@@ -103,7 +103,7 @@ def table(source, entries):
     head = "".join(f'<th scope="col">{name}' for name in COLUMNS)
     parts = [
         f'<div class="ledger-frame" tabindex="0" role="region" aria-labelledby="ledger-{source.name}">',
-        f'<table class="ledger"><caption id="ledger-{source.name}">{html.escape(source.citation)}</caption>',
+        f'<table class="ledger results"><caption id="ledger-{source.name}">{html.escape(source.citation)}</caption>',
         f"<thead><tr>{head}</thead>",
     ]
     for entry in entries:

@@ -132,6 +132,7 @@ class TestSwitches:
 
     def test_without_a_script_all_can_be_read(self, chromium, book):
         page = chromium.new_page(java_script_enabled=False)
+        page.set_default_timeout(PATIENCE)
         page.goto((book / TUNING).as_uri())
         fold = page.locator("details.further").first
         expect(page.locator(".switches")).to_be_hidden()
