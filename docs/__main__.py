@@ -4,7 +4,9 @@ With ``OFFLINE=1`` in the environment the site holds Python as well, for readers
 the folder that ``PARTS`` names, or, without it, fetched ones.
 """
 
+import logging
 import os
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -13,7 +15,25 @@ from sphinx.cmd.build import main
 
 from browser import lite, runtime, site
 
-OPTIONS = ("-W", "--keep-going", "-q", "-j", "auto", "-b", "html")
+OPTIONS = ("-W", "--keep-going", "-j", "auto", "-b", "html")
+
+
+class Log:
+    """Standard output where it is no terminal: of what Sphinx says at each page and picture, a line for each tenth."""
+
+    def __init__(self, stream):
+        self.stream, self.line, self.tenth = stream, "", ""
+
+    def write(self, text: str) -> None:
+        *lines, self.line = (self.line + text).split("\n")
+        for line in lines:
+            tenth = re.match(r"(.*\[ *\d*)\d%\]|", line)[1]
+            if not tenth or tenth != self.tenth:
+                print(line, file=self.stream, flush=True)
+            self.tenth = tenth
+
+    def flush(self) -> None:
+        self.stream.flush()
 
 
 def place(folder: Path) -> None:
@@ -30,6 +50,10 @@ if __name__ == "__main__":
     place(Path(folder))
     (Path(folder) / "loopbook.pdf").unlink(missing_ok=True)  # of an earlier state of the book
     shutil.rmtree(Path(folder) / ".doctrees", ignore_errors=True)
+    for noisy in ("myst_parser", "myst_nb"):
+        logging.getLogger(f"sphinx.{noisy}").setLevel(logging.WARNING)
+    if not sys.stdout.isatty():
+        sys.stdout = Log(sys.stdout)
     # what Sphinx remembers, with paths of this machine, is no part of the site
     remembered = Path(folder).with_name(f"{Path(folder).name}.doctrees")
     sys.exit(main([*OPTIONS, "-d", str(remembered), *more, str(Path(__file__).parent), folder]))

@@ -16,9 +16,9 @@ version = release = repository.VERSION
 language = "en"
 
 extensions = [
-    "myst_nb", "stored", "exercise_forms", "mathml", "lazy_figures", "library", "repository_pages",
-    "command_options", "calls", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
-    "permanent", "single_figures", "search_index", "python_in_pages", "on_paper", "light_code",
+    "myst_nb", "stored", "exercise_forms", "mathml", "library", "repository_pages",
+    "command_options", "calls", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive",
+    "permanent", "single_figures", "search_index", "python_in_pages", "reading", "light",
 ]  # fmt: skip
 exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
 

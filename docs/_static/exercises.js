@@ -63,15 +63,18 @@
   let judge = null;
   const waiting = new Set(); // exercises that show how far loading is
 
+  // The judge of this page. Until it is asked it loads nothing; but a Python that is there does not end.
+  async function makeJudge() {
+    const { Judge } = await import(new URL("judge.js", here));
+    const onProgress = (news) => waiting.forEach((exercise) => exercise.showLoading(news));
+    judge ??= new Judge({ version: known.version, onProgress });
+  }
+
   async function ask(request) {
-    if (!judge) {
-      let Judge;
-      try {
-        ({ Judge } = await import(new URL("judge.js", here)));
-      } catch {
-        throw new Error("What checks answers could not be loaded: look whether there is a network, and press again.");
-      }
-      judge ??= new Judge({ onProgress: (news) => waiting.forEach((exercise) => exercise.showLoading(news)) });
+    try {
+      if (!judge) await makeJudge();
+    } catch {
+      throw new Error("What checks answers could not be loaded: look whether there is a network, and press again.");
     }
     const reply = await judge.ask(request);
     if (judge.library && judge.library !== known.version) {
@@ -136,7 +139,7 @@
       this.number = element.dataset.exercise;
       this.rungs = Number(element.dataset.rungs);
       this.form = element.querySelector("form");
-      for (const part of ["statement", "fields", "answer", "hints", "solved", "loading", "known"]) {
+      for (const part of ["statement", "fields", "answer", "hints", "solved", "loading", "known", "whose"]) {
         this[part] = element.querySelector(`.${part}`);
       }
       for (const name of ["check", "hint", "solve", "own"]) this[`${name}Button`] = element.querySelector(`button.${name}`);
@@ -149,8 +152,7 @@
       });
       this.hintButton?.addEventListener("click", () => this.act(() => this.hint()));
       this.solveButton.addEventListener("click", () => this.act(() => this.solve()));
-      if (element.dataset.own) this.ownButton.addEventListener("click", () => askForName(this));
-      else this.ownButton.remove();
+      this.ownButton?.addEventListener("click", () => (this.isStrange ? renewAll(this) : askForName(this)));
       this.form.addEventListener("input", (event) => this.typed(event.target));
       this.form.addEventListener("click", (event) => this.putIn(event.target));
       this.form.addEventListener("mousedown", (event) => {
@@ -168,6 +170,11 @@
 
     get tried() {
       return table(remembered().tried[this.key]);
+    }
+
+    // Whether the numbers are others than those of the name that is kept.
+    get isStrange() {
+      return Boolean(this.ownButton) && this.student !== remembered().student;
     }
 
     get seenHints() {
@@ -308,7 +315,10 @@
 
     async check() {
       clearTimeout(this.later);
-      if (await this.renewed()) return this.say("quiet", `These are the numbers of ${this.student}. Answer these.`);
+      if (await this.renewed()) {
+        others(this);
+        return this.say("quiet", `These are the numbers of ${this.student}. Answer these.`);
+      }
       const answers = this.answers();
       if (!Object.values(answers).some(isFilledIn)) {
         this.say("quiet", "Nothing is filled in yet.");
@@ -409,7 +419,7 @@
 
     // What helps is a file for the numbers of everybody, as long as no Python is there; else Python says it.
     async helped(request, fromFile) {
-      if (!this.student && !judge) {
+      if (!this.student && !judge?.library) {
         try {
           return fromFile(await help(this.number));
         } catch {
@@ -423,8 +433,8 @@
 
     // Show the numbers of the name that is kept; true where they were others before.
     async renewed() {
-      const student = this.element.dataset.own ? remembered().student : null;
-      if (student === this.student) return false;
+      if (!this.isStrange) return false;
+      const { student } = remembered();
       if (!student) {
         this.become(null, this.everybodys);
         return true;
@@ -446,7 +456,6 @@
       this.answer.replaceChildren();
       this.hints.replaceChildren();
       this.solved.replaceChildren();
-      this.element.classList.remove("of-somebody-else");
       this.begin();
     }
 
@@ -467,23 +476,12 @@
     // After a reload the statement has the numbers of everybody: hers come from the cache, or when she asks for them.
     async comeBack() {
       const { student } = remembered();
-      if (!student || !this.element.dataset.own) return this.begin();
+      if (!this.isStrange) return this.begin();
       this.form.inert = true; // what is typed under everybody's numbers would go with them
       const reply = await shown(this.number, student).then(({ kept }) => kept()).catch(() => null);
       this.form.inert = false;
-      if (reply) return this.become(student, reply);
-      this.begin();
-      this.askToRenew(student);
-    }
-
-    askToRenew(student) {
-      this.element.classList.add("of-somebody-else");
-      const show = made("button", { type: "button" }, `Show the numbers of ${student}`);
-      show.addEventListener("click", async () => {
-        await renewAll(this);
-        this.fields.querySelector("input, textarea, select")?.focus();
-      });
-      this.say("quiet", "Above are the numbers that everybody has.", show);
+      if (reply) this.become(student, reply);
+      else this.begin();
     }
 
     showProgress() {
@@ -491,8 +489,12 @@
       const right = answered[this.key];
       this.known.textContent = right === true ? "✓ right" : right === false ? "tried" : "";
       this.known.className = right === true ? "known right" : "known";
-      const name = this.element.dataset.own && student;
-      this.ownButton.textContent = name ? `Numbers of ${name}` : "Your own numbers";
+      this.element.classList.toggle("of-somebody-else", this.isStrange);
+      if (!this.ownButton) return;
+      const [whose, change] = !student ? ["", this.isStrange ? "Everybody's numbers" : "Your own numbers"]
+        : this.isStrange ? ["everybody's numbers", `Show the numbers of ${student}`] : [`numbers of ${student}`, "Change"];
+      this.whose.textContent = whose;
+      this.ownButton.textContent = change;
     }
   }
 
@@ -690,6 +692,7 @@
   if (byWeb) {
     for (const element of document.querySelectorAll(".exercise[data-exercise]")) exercises.push(new Exercise(element));
     for (const exercise of exercises) exercise.comeBack();
+    if (exercises.length && Object.keys(remembered().tried).length) makeJudge().catch(() => {});
   } else {
     // a browser with JavaScript keeps what is for others as a text
     for (const hidden of document.querySelectorAll(".exercise noscript")) {

@@ -1,11 +1,12 @@
-// Python in a worker of its own: it loads what an answer needs, part by part, and answers.
+// Python in a worker, shared by all pages where the browser can: it loads what an answer needs, part by part, and answers.
 //
 // wheels/parts.json says what there is (docs/browser/site.py writes it): {version, pyodide, parts: {name: {says, files:
 // [{url, bytes, sha256}]}}, later: {package: part}}. The part "python" comes first, others when an exercise needs them.
 // What came once is kept in the browser's Cache storage, where the page's address allows that (https or localhost).
 //
-// Messages from the page: {id, request}. To the page: {progress: {share, says}}, {begun: id, limit}, {id, reply} and
-// {id, failed, isDead}, where id is missing if it is not about one request; and {library}, its version, once it is there. Requests and replies are texts of JSON.
+// Messages from a page: {id, request}, and {end} from one that has left this Python. To all pages: {progress: {share,
+// says}}, {begun: id, limit}, {id, reply} or {id, failed}, {library}, its version, once it is there, and {isGone}, at the
+// end of this Python, with {failed} where another one would be no better. Requests and replies are texts of JSON.
 
 const SITE = new URL("..", self.location);
 const PARTS = new URL("wheels/parts.json", SITE);
@@ -27,9 +28,30 @@ const REST = 1000;
 /** Progress: the first part of the way is the download, the rest is what Python does with it. */
 const DOWNLOADED = 0.6;
 
-function progress(share, says) {
-  self.postMessage({ progress: { share, says } });
+const pages = new Set(); // their ports
+
+function tell(message) {
+  for (const page of pages) page.postMessage(message);
 }
+
+function progress(share, says) {
+  tell({ progress: { share, says } });
+}
+
+/** Ends an answer without end: Python looks here for a signal again and again. */
+const clock = {
+  end: Infinity,
+  hasRung: false,
+  begin(seconds) {
+    Object.assign(this, { end: performance.now() + seconds * 1000, hasRung: false });
+  },
+  get 0() {
+    if (performance.now() < this.end) return 0;
+    Object.assign(this, { end: performance.now() + 1000, hasRung: true }); // once more where nobody hears it
+    return 2; // SIGINT
+  },
+  set 0(_) {}, // Python takes a signal away that it has seen
+};
 
 /** What this browser keeps of the site, or nothing where it keeps nothing: caches exist on https and localhost only. */
 class Kept {
@@ -78,6 +100,13 @@ function nameOf(url) {
 
 /** A file that cannot be had now; Python is none the worse for it. */
 class Missing extends Error {}
+
+/** An answer that does not come to its end; Python is none the worse for that either. */
+class TooSlow extends Error {
+  constructor(seconds) {
+    super(`ended after ${seconds} s: judging this takes too long; write the answer in a simpler form`);
+  }
+}
 
 /** Loads files of parts, and tells how far it is. */
 class Loader {
@@ -219,6 +248,7 @@ class Python {
     }
     progress(0.8, this.batches ? "Python remembers the exercises" : "Python reads the exercises for the first time");
     this.judge.begin();
+    this.pyodide.setInterruptBuffer(clock);
     await this.kept.tidy();
   }
 
@@ -242,36 +272,38 @@ class Python {
     this.judge.later.arrived(name);
   }
 
-  /** Call a function of the judge until it lacks no part. */
-  async complete(call) {
+  /** Call a function of the judge until it lacks no part; on a slow device that may take longer. */
+  async within(seconds, id, call, slowness = () => this.judge.slowness()) {
     for (;;) {
-      const [reply, lacks] = call();
-      if (!lacks) return reply;
-      await this.fetch(lacks);
+      const limit = Math.round(seconds * slowness());
+      tell({ begun: id, limit });
+      clock.begin(limit);
+      try {
+        const [reply, lacks] = call();
+        if (!lacks) return reply;
+        clock.end = Infinity;
+        await this.fetch(lacks);
+      } catch (error) {
+        throw clock.hasRung ? new TooSlow(limit) : error;
+      } finally {
+        clock.end = Infinity;
+      }
     }
-  }
-
-  /** Tell the page that something begins now which may take so long; on a slow device longer. */
-  begin(id, seconds, slowness = this.judge.slowness()) {
-    self.postMessage({ begun: id, limit: Math.round(seconds * slowness) });
   }
 
   async answer(id, request) {
     const { do: what } = JSON.parse(request);
     const isTyping = what === "typeset"; // then there is no key, and no time to measure how slow it is here
-    if (!isTyping) {
-      this.begin(id, LIMIT.prepare);
-      await this.complete(() => ["", this.judge.prepare(request)]);
-    }
-    return this.complete(() => {
-      this.begin(id, LIMIT[what] ?? LIMIT.prepare, isTyping ? 1 : undefined);
-      const reply = this.judge.reply(request);
+    if (!isTyping) await this.within(LIMIT.prepare, id, () => ["", this.judge.prepare(request)]);
+    const reply = () => {
+      const found = this.judge.reply(request);
       try {
-        return reply.toJs();
+        return found.toJs();
       } finally {
-        reply.destroy();
+        found.destroy();
       }
-    });
+    };
+    return this.within(LIMIT[what] ?? LIMIT.prepare, id, reply, isTyping ? () => 1 : undefined);
   }
 
   /** Keep what Python has compiled, little by little, until it is all kept or `isWanted` says that there is a question. */
@@ -309,28 +341,43 @@ async function listed() {
   }
 }
 
-let rest; // the timer until then
-const started = Python.started();
-started.then(
-  ({ parts }) => self.postMessage({ library: parts.library }),
-  (error) => self.postMessage({ failed: error.message }),
-);
-
+let started; // Python, once somebody has asked for it
+let rest; // the timer until it keeps what it has compiled
 let questions = 0;
-let queue = started;
-self.onmessage = ({ data: { id, request } }) => {
-  questions += 1;
-  queue = queue.then(async () => {
-    const python = await started;
-    try {
-      self.postMessage({ id, reply: await python.answer(id, request) });
-    } catch (error) {
-      // what Python raises it survives; an overflow of the stack below it, it does not
-      const isDead = !(error instanceof python.PythonError) && !(error instanceof Missing);
-      self.postMessage({ id, failed: error.message, isDead });
-    }
-    questions -= 1;
-    clearTimeout(rest);
-    rest = setTimeout(() => python.keepCompiled(() => questions > 0), REST);
-  });
-};
+let queue = Promise.resolve();
+
+async function answer({ id, request }) {
+  started ??= Python.started();
+  const python = await started.catch(({ message }) => end(message));
+  if (!python) return;
+  tell({ library: python.parts.library });
+  try {
+    tell({ id, reply: await python.answer(id, request) });
+  } catch (error) {
+    const lives = [python.PythonError, Missing, TooSlow].some((kind) => error instanceof kind);
+    const says = "Python cannot go on from this answer, and begins anew: write the answer in a simpler form";
+    tell({ id, failed: lives ? error.message : says });
+    if (!lives) end(); // as after an overflow of the stack below it
+  }
+  questions -= 1;
+  clearTimeout(rest);
+  rest = setTimeout(() => python.keepCompiled(() => questions > 0), REST);
+}
+
+function end(failed) {
+  tell({ isGone: true, failed });
+  self.close();
+}
+
+function join(page) {
+  pages.add(page);
+  page.onmessage = ({ data }) => {
+    if (data.end) return end();
+    questions += 1;
+    queue = queue.then(() => answer(data));
+  };
+  started?.then(({ parts }) => page.postMessage({ library: parts.library }), () => {});
+}
+
+if ("onconnect" in self) self.onconnect = ({ ports }) => join(ports[0]);
+else join(self);

@@ -53,7 +53,7 @@
       const after = rows[k + 1];
       if (entry.source !== before?.source) {
         parts.push(`${before ? "</tbody></table></div>" : ""}<div class="ledger-frame" tabindex="0" role="region"
-          aria-label="${escaped(sources[entry.source])}"><table class="ledger">
+          aria-label="${escaped(sources[entry.source])}"><table class="ledger results">
           <caption>${escaped(sources[entry.source])}</caption><thead><tr>${head}</thead>`);
       }
       if (entry !== before) {

@@ -5,8 +5,9 @@
 //   counts, start    how many positions each slider has, and which is the first
 //   verdict, result, axis, word, image    which of the verdicts, results ... is seen: a number for each position of all
 //                    the sliders, the last one moving first, or one number where it is always the same
-//   items            lines, areas and points of the pictures; line is which of the lines it is, likewise, or -1 for none
-//   lines            their shapes, see path
+//   items            lines, areas and points of the pictures; line is which of the lines it is, likewise, -1 for none,
+//                    or -2 for one between those of the nearest positions of the slider `along` that have one
+//   lines            their shapes, see corners
 "use strict";
 
 (() => {
@@ -21,34 +22,115 @@
   const LIFT = FARTHEST + 1;
   const NEARBY = "800px"; // from the window, where a lesson begins to load
 
-  // The path of a shape: each corner is the way from the one before it, in letters.
-  function path(text, closed) {
-    const end = closed ? "Z" : "";
-    let written = "";
-    let x = 0;
-    let y = 0;
-    let corners = 0;
-    let upright = false; // whether the next number is a way down or up
+  const BETWEEN = -2;
+  const UPRIGHT = 0.001; // of a way up or down, as in docs/lessons/shapes.py
+
+  // The corners of a shape, piece by piece: each corner is the way from the one before it, in letters.
+  function corners(text) {
+    const pieces = text ? [[]] : [];
+    const place = [0, 0];
+    let upright = 0; // whether the next number is a way down or up
     for (let k = 0; k < text.length; k++) {
       let value = DIGIT[text[k]];
       if (value === LIFT) {
-        written += (corners === 1 ? `L${x} ${y}` : "") + end;
-        corners = 0;
+        pieces.push([]);
         continue;
       }
       if (value < FAR) value -= NEAR;
       else if (value < FARTHEST) value = (value - FAR - 4) * BASE + DIGIT[text[++k]];
       else value = DIGIT[text[++k]] * BASE + DIGIT[text[++k]] - Math.floor(BASE ** 2 / 2);
-      if (!upright) x += value;
-      else {
-        y += value;
-        written += `${corners ? "L" : "M"}${x} ${y}`;
-        corners += 1;
-      }
-      upright = !upright;
+      place[upright] += value;
+      if (upright) pieces.at(-1).push([...place]);
+      upright = 1 - upright;
     }
-    return written + (corners === 1 ? `L${x} ${y}` : "") + (text ? end : "");
+    return pieces;
   }
+
+  // A piece as a function of how far one is along it, from 0 to 1, and where its corners are.
+  function walk(piece) {
+    const far = [0];
+    for (let k = 1; k < piece.length; k++) {
+      const [right, down] = [0, 1].map((n) => Math.abs(piece[k][n] - piece[k - 1][n]));
+      far.push(far[k - 1] + right + UPRIGHT * down);
+    }
+    const whole = far.at(-1) || 1;
+    let k = 0; // corners are asked for in their order
+    const at = (share) => {
+      while (k < far.length - 2 && far[k + 1] < share * whole) k++;
+      if (piece.length === 1) return piece[0];
+      const part = (share * whole - far[k]) / (far[k + 1] - far[k] || 1);
+      return piece[k].map((value, n) => value + part * (piece[k + 1][n] - value));
+    };
+    return { at, shares: far.map((way) => way / whole) };
+  }
+
+  // The shape between two others, as docs/lessons/shapes.py has it.
+  function between(one, other, share) {
+    return one.map((piece, n) => {
+      const [first, last] = [walk(piece), walk(other[n])];
+      const shares = [...new Set([...first.shares, ...last.shares])].sort((a, b) => a - b);
+      return shares.map((place) => {
+        const end = last.at(place);
+        return first.at(place).map((value, k) => Math.round(10 * (value + share * (end[k] - value))) / 10);
+      });
+    });
+  }
+
+  // A browser draws a line without length as a dot.
+  function path(pieces, closed) {
+    const all = pieces.map((piece) => (piece.length === 1 ? [piece[0], piece[0]] : piece));
+    return all.map((piece) => `M${piece.map((place) => place.join(" ")).join("L")}${closed ? "Z" : ""}`).join("");
+  }
+
+  // The values of an axis, as a function of the share of the frame; none where they are not even.
+  function scale(numbers) {
+    const [first, ...more] = numbers.map(([share, text]) => [share, Number(text.replace("−", "-"))]);
+    const last = more.at(-1);
+    if (!last) return null;
+    const slope = (last[1] - first[1]) / (last[0] - first[0]);
+    const at = (share) => first[1] + slope * (share - first[0]);
+    if (!more.every(([share, value]) => Math.abs(value - at(share)) < 0.01 * Math.abs(slope))) return null;
+    const digits = Math.max(0, 2 - Math.floor(Math.log10(Math.abs(slope))));
+    return { at, says: (value) => value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1").replace("-", "−") };
+  }
+
+  const SETTLED = 0.05; // of a change: a curve that stays so close to its end has settled
+
+  const [FEW, MANY] = [3, 30]; // turns of a curve that oscillates; what has more is noise
+
+  // What a curve does from a time on, in words; points are (time, value), and goal is the setpoint, where there is one.
+  function told(points, goal, time, value, [unitOfTime, unit]) {
+    const values = points.map(([, y]) => y);
+    const [first, last, low, high] = [values[0], values.at(-1), Math.min(...values), Math.max(...values)];
+    if (low < value.at(0) || high > value.at(1)) return "leaves the picture"; // and how far, nobody knows here
+    const [from, until] = [points[0][0], points.at(-1)[0]];
+    // where it rests: at its end, if it hardly moves any more, or else at the setpoint
+    const late = values.slice(Math.max(0, points.findLastIndex(([x]) => x < until - (until - from) / 5)));
+    const isAtRest = Math.max(...late) - Math.min(...late) < (SETTLED / 2) * (high - low);
+    const rest = isAtRest ? last : (goal ?? last);
+    const [way, rises] = [Math.abs(rest - first), rest > first];
+    const isStep = way > 0.3 * (high - low);
+    const band = SETTLED * (isStep ? way : high - low);
+    const k = values.findLastIndex((y) => Math.abs(y - rest) > band);
+    const isSettled = k < values.length - 1 && (isAtRest || goal !== undefined);
+    const turns = values.filter((y, n) => (y - values[n - 1]) * (values[n + 1] - y) < 0 && Math.abs(y - rest) > band).length;
+    const says = [];
+    const isHigh = high - rest > rest - low;
+    if (!isSettled && turns > FEW) {
+      says.push(`${turns > MANY ? "varies" : "oscillates"} between ${value.says(low)} and ${value.says(high)}${unit}`);
+    } else if (isStep) says.push(`${last > first ? "rises" : "falls"} to ${value.says(last)}${unit}`);
+    else says.push(`${isHigh ? "rises" : "falls"} as far as ${value.says(isHigh ? high : low)}${unit}`);
+    if (!isSettled) return [...says, "has not settled"].join(", ");
+    const beyond = Math.round((100 * (rises ? high - rest : rest - low)) / way);
+    if (isStep && beyond > 0) says.push(`overshoots by ${beyond} %`);
+    if (k < 0) return says.join(", ");
+    const [before, after] = [points[k], points[k + 1]];
+    const share = (Math.abs(before[1] - rest) - band) / Math.abs(after[1] - before[1]);
+    const settled = before[0] + share * (after[0] - before[0]) - from;
+    return [...says, `settles after ${time.says(settled)}${unitOfTime}`].join(", ");
+  }
+
+  const unitOf = (name) => name.match(/\[(.+)\]/)?.[1].replace(/^1$/, "").replace(/^./, "\u202f$&") ?? "";
 
   function element(name, className, html) {
     const made = document.createElement(name);
@@ -66,6 +148,7 @@
       this.frames = [...section.querySelectorAll(".lesson-frame")];
       this.image = section.querySelector(".lesson-image img");
       this.result = section.querySelector(".lesson-result");
+      this.words = section.querySelector(".lesson-words"); // not where there are no curves, too
       this.keep = section.querySelector(".lesson-keep"); // not where there are no curves
       const each = (sign) => data.items.map((item, k) => section.querySelector(sign.replace("#", k)));
       this.paths = each('path[data-item="#"]');
@@ -89,16 +172,30 @@
       return Array.isArray(column) ? column[position] : column;
     }
 
+    // The shape of an item at the present position, or at another one.
+    shape({ line: column }, position = this.shown) {
+      const { counts, along, lines } = this.data;
+      const line = this.at(column, position);
+      if (line !== BETWEEN) return corners(lines[line] ?? "");
+      const step = counts.slice(along + 1).reduce((product, count) => product * count, 1);
+      let [before, after] = [position - step, position + step];
+      while (column[before] < 0) before -= step;
+      while (column[after] < 0) after += step;
+      const ends = [before, after].map((place) => corners(lines[column[place]]));
+      return between(...ends, (position - before) / (after - before));
+    }
+
     // Draw what is not as it was at the last position of the sliders, at first all of it.
     show() {
       const { data, shown: before } = this;
       this.shown = this.position;
-      const isNew = (column) => before === undefined || this.at(column) !== this.at(column, before);
+      const isNew = (column) =>
+        before === undefined || this.at(column) === BETWEEN || this.at(column) !== this.at(column, before);
       data.items.forEach((item, k) => {
         if (!isNew(item.line)) return;
-        const line = this.at(item.line);
-        this.paths[k].setAttribute("d", line < 0 ? "" : path(data.lines[line], item.kind === "area"));
-        if (this.legends[k]) this.legends[k].hidden = line < 0;
+        const shape = this.shape(item);
+        this.paths[k].setAttribute("d", path(shape, item.kind === "area"));
+        if (this.legends[k]) this.legends[k].hidden = !shape.length;
       });
       if (isNew(data.axis)) this.drawAxes(data.axes[this.at(data.axis)]);
       if (isNew(data.word)) this.write(data.groups[this.at(data.word)]);
@@ -142,6 +239,44 @@
       }
     }
 
+    // What the curves of a panel do, in words: of the first panel how they go on, of the others how far they go.
+    inWords({ axis, clock }, panel) {
+      const [time, value] = this.data.axes[this.at(this.data.axis)][panel]?.map(scale) ?? [];
+      if (!time || !value || !clock.startsWith("<i>t</i>")) return [];
+      const units = [unitOf(clock), unitOf(axis)];
+      const [whole, height] = [time, value].map(({ at }) => Math.abs(at(1) - at(0)));
+      const span = (points, n) => Math.max(...points.map((one) => one[n])) - Math.min(...points.map((one) => one[n]));
+      const lines = this.data.items.filter((item) => item.panel === panel && item.kind === "line");
+      const curves = lines
+        .map((item) => [item.label, this.shape(item).flat().map(([x, y]) => [time.at(x / WIDE), value.at(1 - y / TALL)])])
+        .filter(([, points]) => points.length);
+      // from when on: a step of the setpoint, and upright lines with a word
+      const setpoint = curves.find(([label]) => label === "setpoint")?.[1] ?? [];
+      const step = setpoint.findIndex(([, y], k) => k && Math.abs(y - setpoint[k - 1][1]) > 0.01 * height);
+      const times = [[step < 0 ? time.at(0) : setpoint[step][0], ""]];
+      for (const word of this.data.groups[this.at(this.data.word)].map((one) => this.data.words[one])) {
+        const at = time.at(word[1] / 100);
+        const isHere = ([, points]) =>
+          span(points, 0) === 0 && span(points, 1) > 0.9 * height && Math.abs(points[0][0] - at) < 0.01 * whole;
+        if (word[0] === panel && curves.some(isHere)) times.push([at, word.at(-1)]);
+      }
+      const moving = curves.filter(
+        ([label, points]) => label !== "setpoint" && span(points, 0) > 0.1 * whole && span(points, 1) > 0.005 * height,
+      );
+      return moving.slice(0, moving[0]?.[0] ? 2 : 1).map(([label, points]) => {
+        const name = label || axis.replace(/ *\[.*/, "");
+        const [low, high] = [Math.min, Math.max].map((end) => end(...points.map(([, y]) => y)));
+        if (panel && (low < value.at(0) || high > value.at(1))) return `${name} leaves the picture.`;
+        if (panel) return `${name} is between ${value.says(low)} and ${value.says(high)}${units[1]}.`;
+        const says = times.map(([from, word], k) => {
+          const part = points.filter(([x]) => x >= from && x <= (times[k + 1]?.[0] ?? Infinity));
+          const isStill = part.length < 3 || span(part, 1) < 0.005 * height;
+          return isStill ? "" : `${word ? `after ${word} it ` : ""}${told(part, setpoint.at(-1)?.[1], time, value, units)}`;
+        });
+        return `${name} ${says.filter(Boolean).join("; ")}.`;
+      });
+    }
+
     // The verdict and the results, to be seen and to be heard.
     tell(verdict, results) {
       const pairs = this.data.labels.map((label, k) => element("span", "", `${label} <b>${results[k]}</b>`));
@@ -152,7 +287,10 @@
         input.setAttribute("aria-valuetext", text);
         input.parentElement.querySelector("output").textContent = text;
       }
-      const told = this.result.textContent.trim();
+      const clock = this.data.panels.at(-1)?.clock;
+      const words = this.data.panels.flatMap((panel, n) => this.inWords({ ...panel, clock }, n));
+      if (this.words) this.words.innerHTML = words.join(" ");
+      const told = [this.result, this.words].map((part) => part?.textContent.trim()).filter(Boolean).join(". ");
       this.plots.forEach((plot) => {
         plot.dataset.names ??= plot.getAttribute("aria-label").split(". ")[0];
         plot.setAttribute("aria-label", `${plot.dataset.names}. ${told}`);
@@ -164,9 +302,8 @@
       const { data, kept } = this;
       const comparable = kept !== null && this.at(data.axis, kept) === this.at(data.axis); // other axes would mislead
       data.items.forEach((item, k) => {
-        const line = comparable ? this.at(item.line, kept) : -1;
-        const seen = line >= 0 && line !== this.at(item.line);
-        this.grey[k]?.setAttribute("d", seen ? path(data.lines[line], false) : "");
+        const isElsewhere = kept !== this.shown && Array.isArray(item.line);
+        this.grey[k]?.setAttribute("d", comparable && isElsewhere ? path(this.shape(item, kept), false) : "");
       });
     }
 

@@ -14,10 +14,12 @@
   const KINDS = ["example", "equation", "figure", "table", "section", "exercise"];
   const GREEK = { α: "alpha", β: "beta", γ: "gamma", δ: "delta", Δ: "delta", ε: "epsilon", ζ: "zeta", η: "eta", θ: "theta",
     κ: "kappa", λ: "lambda", μ: "mu", π: "pi", ρ: "rho", σ: "sigma", τ: "tau", φ: "phi", ω: "omega", Ω: "omega" };
-  const PREFIX = 0.4; // what the beginning of a word counts, to the whole word
-  const SECOND = 0.8; // what the best place of a way to say it counts, where it is in no chapter
-  const NAMED = 1.2; // what a section counts whose title is what is asked, or that of a function of this name
+  const FORM = 0.9; // what another form of a word counts, as tuning for tune, to the word itself
+  const PREFIX = 0.4; // what its beginning counts
   const SIMILAR = 0.3; // what a word with another letter counts
+  const TITLED = 3; // what a title of just these words adds to a section, in parts of what it counts otherwise
+  const KINDS_OF_PAGES = { chapters: 1, solutions: 0.45, reference: 0.2 }; // what their sections count
+  const OTHER_PAGE = 0.5;
   const shared = (window.loopbookSearch ||= { texts: {} });
 
   // What the index is made of.
@@ -42,8 +44,8 @@
   async function opened() {
     await load("index");
     if (!book) {
-      const { words, entries, ...rest } = shared.index;
-      book = { ...rest, words: words.split(" "), entries: entries.split(" ") };
+      const { words, entries, common, ...rest } = shared.index;
+      book = { ...rest, words: words.split(" "), entries: entries.split(" "), common: new Set(common.split(" ")) };
     }
     return book;
   }
@@ -71,6 +73,12 @@
     return (cut || []).map((word) => (/^..+[^sui0-9]s$/.test(word) && word.length > 3 ? word.slice(0, -1) : word));
   }
 
+  // What tune, tuned and tuning have in common, and control and controllers.
+  function stem(word) {
+    const short = word.replace(/(?:ation|ion|ing|ed|er|es|e|s)$/, "");
+    return short.length > 2 && /[aeiouy]/.test(short) ? short.replace(/([^aeiou])\1$/, "$1") : word;
+  }
+
   function firstFrom(word) {
     let [low, high] = [0, book.words.length];
     while (low < high) {
@@ -81,13 +89,16 @@
     return low;
   }
 
-  // The sections with a word, with words that begin with it, or else with words that are nearly it.
+  // The sections with a word or a form of it, with words that begin with it, or else with words that are nearly it.
   function sectionsWith(word, isLast) {
     const sections = new Map();
     const least = isLast ? 1 : 3; // of letters, for a beginning
-    for (let k = firstFrom(word); k < book.words.length && book.words[k].startsWith(word); k++) {
-      const whole = book.words[k] === word;
-      if (whole || word.length >= least) entry(k, sections, whole ? 1 : PREFIX);
+    const root = stem(word);
+    for (let k = firstFrom(root); k < book.words.length && book.words[k].startsWith(root); k++) {
+      const other = book.words[k];
+      if (other === word) entry(k, sections);
+      else if (stem(other) === root) entry(k, sections, FORM);
+      else if (other.startsWith(word) && word.length >= least) entry(k, sections, PREFIX);
     }
     if (!sections.size && word.length > 3 && !/\d/.test(word)) {
       const limit = word.length > 7 ? 2 : 1;
@@ -112,15 +123,24 @@
     return row[other.length];
   }
 
-  // What is asked, and what the book may call it: lists of words.
+  // What is asked, without the words of a question.
+  function core(text) {
+    const all = words(text);
+    const asked = all.filter((word) => !book.common.has(word));
+    return asked.length ? asked : all;
+  }
+
+  // What is asked, and what the book may call it: lists of words; and what there is to know before.
   function ways(asked) {
     const found = [asked];
+    const notes = new Set();
     const text = ` ${asked.join(" ")} `;
-    for (const [typed, meant] of book.aliases) {
+    for (const [typed, meant, note] of book.aliases) {
       if (!text.includes(` ${typed} `)) continue;
-      for (const said of meant) found.push(text.replace(` ${typed} `, ` ${said} `).trim().split(" "));
+      if (note) notes.add(note);
+      for (const said of meant) found.push(core(text.replace(` ${typed} `, ` ${said} `)));
     }
-    return found.slice(0, 6);
+    return { found: found.slice(0, 8), note: [...notes].join(" ") };
   }
 
   // The places of the book that a number names, as "10.15", "Eq. (10.15)" or "table 12.3".
@@ -137,53 +157,47 @@
   }
 
   function ranked(text) {
-    const asked = words(text);
     const places = numbered(text);
-    if (places.length) return { results: places, asked, complete: true };
+    if (places.length) return { results: places, asked: words(text), note: "", complete: true };
+    const asked = core(text);
+    const { found, note } = ways(asked);
+    const isCode = /[a-z][._]|\(/i.test(text.trim()); // first_order: a function of the library
     const total = new Map();
-    let complete = true;
-    for (const [rank, way] of ways(asked).entries()) {
-      const each = way.map((word, k) => sectionsWith(word, k === way.length - 1 && way === asked));
-      const found = together(each);
-      const most = (rank ? 1.05 : 1) * Math.max(...found.map(([, weight]) => weight)); // each way has a best place
-      for (const [section, weight] of found) {
-        const share = (inChapter(section) ? 1 : SECOND) * (weight / most);
-        total.set(section, Math.max(total.get(section) || 0, share));
+    let complete = false;
+    for (const [rank, way] of found.entries()) {
+      const places = together(way, way === asked).map(({ section, weight, share }) => {
+        const [kind] = book.pages[book.sections[section][0]][0].split("/");
+        const worth = isCode && kind === "reference" ? 1.5 : (KINDS_OF_PAGES[kind] ?? OTHER_PAGE);
+        return { section, weight: weight * worth, share };
+      });
+      const most = Math.max(...places.map(({ weight }) => weight)); // each way has a best place,
+      const share = Math.max(...places.map(({ share }) => share)) ** 2; // which counts less where a word is missing
+      complete ||= share === 1;
+      for (const { section, weight } of places) {
+        total.set(section, Math.max(total.get(section) || 0, (rank ? 1 : 0.98) * share * (weight / most)));
       }
-    }
-    if (!total.size) {
-      complete = false; // no section has all the words: those with most of them
-      for (const word of asked) for (const [section, weight] of sectionsWith(word, false)) {
-        total.set(section, (total.get(section) || 0) + weight);
-      }
-    }
-    for (const [section, weight] of total) {
-      if (isNamed(book.sections[section][2], asked.join(" "))) total.set(section, NAMED * weight);
     }
     const order = [...total].sort((a, b) => b[1] - a[1] || a[0] - b[0]);
-    return { results: order.map(([section]) => ({ section })), asked: ways(asked).flat(), complete };
+    return { results: order.map(([section]) => ({ section })), asked: found.flat(), note, complete };
   }
 
-  function inChapter(section) {
-    return book.pages[book.sections[section][0]][0].startsWith("chapters/");
-  }
-
-  // Whether a title is just what is asked, or that of a function of this name.
-  function isNamed(title, asked) {
-    const own = words(title).join(" ");
-    return own === asked || (!title.includes(" ") && own.endsWith(` ${asked}`));
-  }
-
-  // The sections that have all the words.
-  function together(each) {
-    if (!each.length) return [];
-    const [first, ...others] = each.sort((a, b) => a.size - b.size);
-    const found = [];
-    for (const [section, weight] of first) {
-      const weights = others.map((other) => other.get(section));
-      if (weights.every(Boolean)) found.push([section, weights.reduce((sum, one) => sum + one, weight)]);
-    }
-    return found;
+  // The sections that have words: all of them if there are such, and they count more where their title has them.
+  function together(way, isTyped) {
+    const found = new Map();
+    way.forEach((word, k) => {
+      for (const [section, weight] of sectionsWith(word, isTyped && k === way.length - 1)) {
+        const { sum, count } = found.get(section) || { sum: 0, count: 0 };
+        found.set(section, { sum: sum + weight, count: count + 1 });
+      }
+    });
+    const roots = new Set(way.map(stem));
+    return [...found].map(([section, { sum, count }]) => {
+      const share = count / way.length;
+      const title = core(book.sections[section][2].replace(/^.* · /, ""));
+      const named = title.filter((word) => roots.has(stem(word))).length;
+      const titled = 1 + (TITLED * named ** 2) / (title.length * way.length);
+      return { section, share, weight: sum * share ** 3 * titled };
+    });
   }
 
   // What is shown.
@@ -197,11 +211,7 @@
   // A text with the words that were asked for marked.
   function marked(text, asked) {
     const pieces = text.split(/([\p{L}\p{N}]+)/u);
-    return pieces.map((piece, k) => {
-      const cut = k % 2 ? words(piece) : [];
-      return cut.some((word) => asked.some((one) => (one.length > 2 ? word.startsWith(one) : word === one)))
-        ? element("mark", {}, piece) : piece;
-    });
+    return pieces.map((piece, k) => (k % 2 && isAsked(piece, asked) ? element("mark", {}, piece) : piece));
   }
 
   function excerpt(text, asked) {
@@ -219,7 +229,7 @@
   }
 
   function isAsked(piece, asked) {
-    return words(piece).some((word) => asked.some((one) => (one.length > 2 ? word.startsWith(one) : word === one)));
+    return words(piece).some((word) => asked.some((one) => (one.length > 2 ? word.startsWith(stem(one)) : word === one)));
   }
 
   function result({ section, place, label }, asked) {
@@ -269,12 +279,13 @@
         return;
       }
       if (text !== this.input.value) return; // more has been typed meanwhile
-      const { results, asked, complete } = ranked(text);
+      const { results, asked, note, complete } = ranked(text);
       this.list.replaceChildren(...results.slice(0, this.shown).map((one) => result(one, asked)));
       this.more.hidden = results.length <= this.shown;
       const count = `${results.length} ${results.length === 1 ? "place" : "places"}`;
-      this.said.textContent = !results.length ? "Nothing is found. Another word?"
-        : complete ? count : `No place has all the words; ${count} with some of them.`;
+      const said = !results.length ? "Nothing is found. Another word?"
+        : complete || note ? count : `No place has all the words; ${count} with some of them.`;
+      this.said.replaceChildren(...(note ? [element("strong", {}, note), " "] : []), said);
     }
 
     // Up and down among the results; Enter in the field follows the first.

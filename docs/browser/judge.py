@@ -121,7 +121,7 @@ class Judge:
         self.later.lacks = ""
         try:
             reply = self._answer(text)
-        except Lacking:
+        except (Lacking, KeyboardInterrupt):  # it lacks a part, or takes too long and was ended
             reply = ""
         except Exception as error:  # a page can do nothing with a traceback
             reply = json.dumps({"problem": f"this cannot be answered ({type(error).__name__}: {error})"})

@@ -14,6 +14,8 @@ from loopbook.ledger import sources
 MIME_TYPE = "application/vnd.loopbook.check+json"
 WIDE = 26  # letters of a formula that fit into a cell, on a phone too
 COLUMNS = ("verdict", "equation", "result", "book", "computed")
+#: Between two cases of some evidence, each with its name; the other semicolons of HTML end a sign such as "&lt;".
+CASE = re.compile(r"(?<!&lt)(?<!&gt)(?<!&amp); (?=[^<>;&]{1,40}: )")
 CLAIMS = ("verdict", "equation", "claim", "evidence")
 
 
@@ -46,6 +48,7 @@ def cells(verdict, formulas=in_html, equations=True):
         *([f'<td class="equation">{equation}'] if equations else []),
     ]
     if verdict["kind"] == "claim":
+        computed = CASE.sub("<br>", computed)
         denied = f" <small>({book})</small>" if book != "says so" else ""
         parts.append(f'<th scope="row" class="claim" colspan="2">{title}{denied}')
     else:
@@ -60,7 +63,8 @@ def check(data, taken):
 
     Arguments:
         data: what a notebook stores.
-        taken: the names of the page's places; what has none yet gets its name here: the entry, and its equations.
+        taken: the names of the page's places; what has none yet gets its name here: the entry, and its equations. A
+            status is explained where the page has it first.
     """
     chapter = sources()[data["source"]][data["entry"]].chapter
     place, heading = ledger_anchor(data["source"], data["entry"]), html.escape(data["heading"], quote=False)
@@ -79,14 +83,28 @@ def check(data, taken):
             f'<details class="check" id="{check_anchor(data["source"], data["entry"])}">',
             f"<summary>{sign} <strong>{heading}</strong>: {html.escape(data['counts'])}</summary>",
             '<div class="table" tabindex="0">',
-            f"<table><thead><tr>{head}</thead><tbody>",
+            f'<table class="results"><thead><tr>{head}</thead><tbody>',
             *rows,
             "</table></div>",
             *(f"<p>{code(note)}</p>" for note in data["notes"]),
             f'<p><a href="../ledger/{chapter}.html#{place}">In the ledger</a></p>',
             "</details>",
+            *meanings(data, taken),
         ]
     )
+
+
+def meanings(data, taken):
+    """What the counts of a check mean, where the page has no check above it that has said so."""
+    new = [word for word in STATUSES if any(word == verdict["status"] for verdict in data["verdicts"])]
+    new = [name.removeprefix("means ") for name in fresh([f"means {word}" for word in new], taken)]
+    said = "; ".join(f"<strong>{word}</strong>: {html.escape(STATUSES[word].meaning)}" for word in new)
+    first = (
+        "A check compares what the book prints with what the cells above have found. "
+        if fresh(["means"], taken)
+        else ""
+    )
+    return [f'<p class="means">{first}{said[:1].upper()}{said[1:]}.</p>'] if said else []
 
 
 def fresh(names, taken):

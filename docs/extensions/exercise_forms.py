@@ -57,10 +57,13 @@ def form(number, points, pictures, solutions):
         solution += (
             f'\n<p><a href="{solutions}#solution-{place}">Its picture is in the solutions of this chapter.</a></p>'
         )
-    own = ' data-own="yes"' if one.question.values else ""
+    own, own_button = "", ""
+    if one.question.values:
+        own, own_button = ' data-own="yes"', '<button type="button" class="own">Your own numbers</button>'
     return raw(
         f"""<div class="exercise docutils" data-exercise="{number}" data-rungs="{one.rungs}"{own}>
-<p class="state"><span class="points">{points}</span><span class="known"></span></p>
+<p class="state"><span class="points">{points}</span><span class="known"></span>
+<span class="whose"></span>{own_button}</p>
 <div class="statement">
 {one.text}
 {pictures}
@@ -76,7 +79,6 @@ def form(number, points, pictures, solutions):
 <button type="submit" class="check">Check</button>
 {'<button type="button" class="hint">Hint</button>' if one.rungs else ""}
 <button type="button" class="solve" aria-expanded="false">Solution</button>
-<button type="button" class="own">Your own numbers</button>
 </div>
 </form>
 <p class="why no-script">{NO_SCRIPT}</p>

@@ -1,6 +1,7 @@
-"""What the front page shows of the book: the live lessons by title, an exercise, and one result of the ledger.
+"""What the front page shows of the book: its chapters with pictures and lessons, an exercise, and a checked result.
 
-Directives: ``lesson-links``, ``front-exercise 10.1``, and ``checked-result haugen; Example 7.4; T_i_in_minutes``.
+The role is ``{hours}`4 5 6` ``, the directives are ``chapter-list``, ``front-exercise 10.1``, and
+``checked-result haugen; Example 7.4; T_i_in_minutes``.
 """
 
 import html
@@ -8,6 +9,8 @@ import re
 
 import exercise_forms
 import ledger_page
+import reading
+import single_figures
 import stored
 from checks import COLUMNS, cells, code
 from docutils import nodes
@@ -18,15 +21,44 @@ from sphinx.util.docutils import SphinxDirective
 from loopbook.ledger import sources
 
 
-class LessonLinks(SphinxDirective):
-    """A list of links; a lesson is a place in the page of its chapter."""
+class ChapterList(SphinxDirective):
+    """The chapters in their order, as the README's table has them, each with its first picture and all its lessons."""
 
     def run(self):
-        links = nodes.bullet_list(classes=["lesson-links"])
-        for chapter, name, title in titles():
-            link = nodes.reference("", title, refuri=f"chapters/{chapter}.html#lesson-{name}")
-            links += nodes.list_item("", nodes.paragraph("", "", link))
-        return [links]
+        readme = stored.ROOT / "README.md"
+        self.env.note_dependency(str(readme))
+        row = re.compile(r"^\| \[(.+)\]\(chapters/(\w+)\.ipynb\) \| (.+) \| (.+) \|$", re.MULTILINE)
+        rows = row.findall(readme.read_text("utf-8"))
+        if not rows:
+            raise self.error("the README has no table of chapters")
+        return [nodes.raw("", f'<ol class="chapters">{"".join(tile(*row) for row in rows)}</ol>', format="html")]
+
+
+def tile(title, chapter, what, source):
+    """A chapter in the list, as HTML."""
+    address = f"chapters/{chapter}.html"
+    links = " · ".join(
+        f'<a href="{address}#lesson-{name}">{html.escape(says)}</a>' for of, name, says in titles() if of == chapter
+    )
+    picture = single_figures.image(single_figures.of_chapter(chapter)[0], "_images/")
+    return (
+        f'<li><a href="{address}" tabindex="-1" aria-hidden="true">{picture}</a><div>'
+        f'<p><a href="{address}"><strong>{html.escape(title)}</strong></a> '
+        f"<small>{html.escape(source)} · {minutes_of(chapter)} min</small></p>"
+        f'<p>{html.escape(what[:1].upper() + what[1:])}.</p><p class="lessons">{links}</p></div></li>'
+    )
+
+
+def minutes_of(chapter):
+    """How long the core of a chapter takes."""
+    return reading.minutes(single_figures.cells_of(chapter))
+
+
+def hours(name, rawtext, text, lineno, inliner, options=None, content=()):
+    """The role `hours`: how long the cores of some chapters take, by their numbers, as "6 7 10"."""
+    names = [next((stored.ROOT / "chapters").glob(f"{number:0>2}_*.ipynb")).stem for number in text.split()]
+    total = sum(map(minutes_of, names))
+    return [nodes.Text(f"{total} minutes" if total < 100 else f"{round(total / 60)} hours")], []
 
 
 class FrontExercise(SphinxDirective):
@@ -36,21 +68,17 @@ class FrontExercise(SphinxDirective):
 
     def run(self):
         number = self.arguments[0]
-        chapter, outputs = self.found(number)
+        chapter = exercise_forms.pages().get(number)
+        if not chapter:
+            raise self.error(f"no chapter shows exercise {number}")
+        self.env.note_dependency(str(stored.ROOT / "chapters" / f"{chapter}.ipynb"))
+        cells = single_figures.cells_of(chapter)
+        outputs = next(cell["outputs"] for cell in cells if cell["source"] == f'exercise("{number}")')
         statement = exercise_forms.sheet(number).question.statement
         pictures = stored.pictures(outputs).replace("<img ", '<img loading="lazy" ')
         form = exercise_forms.form(number, statement.points, pictures, f"solutions/{chapter}.html")
         link = f"[In its chapter](chapters/{chapter}.ipynb#exercise-{slug(number)})"
         return self.parse_text_to_nodes(f"**{statement.heading}.** {link}\n\n{form}")
-
-    def found(self, number):
-        """The chapter of an exercise, and what its cell shows."""
-        for file in sorted((stored.ROOT / "chapters").glob("*.ipynb")):
-            for cell in stored.stored(file)["cells"]:
-                if cell["cell_type"] == "code" and re.match(rf'exercise\("{re.escape(number)}"\)$', cell["source"]):
-                    self.env.note_dependency(str(file))
-                    return file.stem, cell["outputs"]
-        raise self.error(f"no chapter shows exercise {number}")
 
 
 class CheckedResult(SphinxDirective):
@@ -85,7 +113,8 @@ def add_files(app, pagename, templatename, context, doctree):
 
 
 def setup(app):
-    app.add_directive("lesson-links", LessonLinks)
+    app.add_directive("chapter-list", ChapterList)
+    app.add_role("hours", hours)
     app.add_directive("front-exercise", FrontExercise)
     app.add_directive("checked-result", CheckedResult)
     app.connect("html-page-context", add_files)

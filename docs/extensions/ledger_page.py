@@ -13,6 +13,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 import checks
+import single_figures
 from docutils import nodes
 from mathml import in_html
 from slugs import check_anchor, ledger_anchor
@@ -26,6 +27,7 @@ from loopbook.ledger import sources
 
 CHAPTERS = Path(__file__).parents[2] / "chapters"
 PAGE = "ledger"
+COLUMNS = (*checks.COLUMNS[:-1], "computed, or evidence")
 
 
 @functools.cache
@@ -38,22 +40,17 @@ def stored(folder=CHAPTERS):
     }
 
 
-@functools.cache
-def titles(folder=CHAPTERS):
+def titles():
     """Return the titles of the chapters by their names, in their order."""
-    found = {}
-    for file in sorted(folder.glob("*.ipynb")):
-        first = json.loads(file.read_text(encoding="utf-8"))["cells"][0]["source"]
-        found[file.stem] = "".join(first).splitlines()[0].lstrip("# ")
-    return found
+    return {file.stem: single_figures.title_of(file.stem) for file in sorted(CHAPTERS.glob("*.ipynb"))}
 
 
 def note(result):
     """Return what a reader must know of a result besides: the correction, the reason, the assumption."""
     status = result.status
     if correct := getattr(status, "correct", ""):
-        shown = correct if result.printed.kind == "claim" else f"`{correct}`:"
-        return f"Correct is: {shown} {status.because}."
+        should = f"It should say: {correct}" if result.printed.kind == "claim" else f"It should be `{correct}`:"
+        return f"{should} {status.because}."
     text = status.note
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 
@@ -104,10 +101,10 @@ def row(result, verdict, formulas):
 
 def table(source, entries):
     """Return the table of a source's entries in one chapter; a note that results share is below the last of them."""
-    head = "".join(f'<th scope="col">{name}' for name in checks.COLUMNS)
+    head = "".join(f'<th scope="col">{name}' for name in COLUMNS)
     parts = [
         f'<div class="ledger-frame" tabindex="0" role="region" aria-labelledby="ledger-{source.name}">',
-        f'<table class="ledger"><caption id="ledger-{source.name}">{html.escape(source.citation)}</caption>',
+        f'<table class="ledger results"><caption id="ledger-{source.name}">{html.escape(source.citation)}</caption>',
         f"<thead><tr>{head}</thead>",
     ]
     for entry in entries:
@@ -136,9 +133,9 @@ def page(chapter, formulas=in_html):
     return "\n".join(
         [
             f"<section><h1>Results of chapter {html.escape(titles()[chapter])}</h1>",
-            f"<p>What the books print, {pages_with_results()[chapter]} results, beside what "
-            f'<a href="../chapters/{chapter}.html">the chapter</a> computes. '
-            f'<a href="../{PAGE}.html">The ledger</a> has those of all chapters and says what the words mean.</p>',
+            f"<p>The books print {pages_with_results()[chapter]} results on the subject of "
+            f'<a href="../chapters/{chapter}.html">this chapter</a>. Here they are next to what the chapter computes. '
+            f'<a href="../{PAGE}.html">The ledger</a> has those of all chapters, and explains the verdicts.</p>',
             *tables,
             "</section>",
         ]
@@ -158,7 +155,7 @@ def data(formulas=in_html):
     entries = [list(entry.values()) for entry in rows(formulas)]
     known = {
         "sources": {source.name: source.citation for source in sources().values()},
-        "columns": checks.COLUMNS,
+        "columns": COLUMNS,
         "entries": entries,
     }
     return f"window.loopbookLedger = {json.dumps(known, ensure_ascii=False, separators=(',', ':'))};\n"
@@ -178,7 +175,7 @@ def controls():
             '<label class="wide">Search <input type="search" name="q" autocomplete="off" '
             'placeholder="10.2, Ziegler, exp(-tau*s)"></label>',
             choice("Source", "source", names),
-            choice("What was done", "status", [(status, status) for status in STATUSES]),
+            choice("Verdict", "status", [(status, status) for status in STATUSES]),
             choice("Chapter", "chapter", [(name, titles()[name]) for name in pages_with_results()]),
             '<p aria-live="polite"><output></output> <button type="reset">Start again</button></p>',
             "</form>",
@@ -204,7 +201,9 @@ def totals():
     counted = errata.totals(sources())
     head = "".join(f'<th scope="col">{name}' for name in ("source", *STATUSES, "all"))
     lines = ['<div class="ledger-frame" tabindex="0" role="region" aria-label="totals">', '<table class="totals">']
-    lines.append(f"<caption>Results by source and by what was done</caption><thead><tr>{head}</thead><tbody>")
+    lines.append(
+        f"<caption>How many results there are, by source and verdict</caption><thead><tr>{head}</thead><tbody>"
+    )
     for name, source in sources().items():
         numbers = [*counted[name].items(), ("", sum(counted[name].values()))]
         shown = "".join(
@@ -234,7 +233,7 @@ def criteria():
     ]
     return "\n".join(
         [
-            _words("What words of degree mean", ("criterion", "words of the books", "means", "because"), words),
+            _words("What the words of a claim are taken to mean", ("word", "in the books", "means", "because"), words),
             _words("What comparisons are judged by", ("source", "what is compared", "by"), measures),
         ]
     )

@@ -160,5 +160,4 @@ def setup(app):
     app.connect("doctree-read", name_sections, priority=400)
     app.connect("doctree-resolved", frame_figures)
     app.add_css_file("places.css")
-    app.add_js_file("places.js", loading_method="defer")
     return {"parallel_read_safe": True, "parallel_write_safe": True}

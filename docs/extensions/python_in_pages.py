@@ -9,6 +9,7 @@ import subprocess
 from pathlib import Path
 
 from sphinx.errors import SphinxError
+from sphinx.util.display import progress_message
 
 from browser import lite, runtime, site
 
@@ -22,9 +23,10 @@ def write(app, exception):
     if app.builder.name != "html" or exception:
         return
     folder, offline = Path(app.outdir), bool(os.environ.get("OFFLINE"))
-    site.write(folder, offline)
     try:
-        lite.write(folder, offline, os.environ.get("PARTS"))  # of the wheels, which are there now, it takes most
+        with progress_message("packing Python for the pages, and the notebooks that run in them"):
+            site.write(folder, offline)
+            lite.write(folder, offline, os.environ.get("PARTS"))  # of the wheels, which are there now, it takes most
     except runtime.MissingError as problem:
         raise NoNotebooksError(str(problem)) from None
     except subprocess.CalledProcessError as problem:

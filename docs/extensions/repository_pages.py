@@ -79,7 +79,8 @@ def put_in(app, docname, source):
         app.env.note_dependency(str(ROOT / file), docname=docname)
         return text_of(file, options.get("from", ""), options.get("until", ""), int(options.get("deeper", 0))).strip()
 
-    source[0] = BLOCK.sub(text, source[0])
+    # what the ledger writes calls a chapter by its file
+    source[0] = re.sub(r"(?<=\(\[)0?(\w+?)_\w+(?=\]\(/chapters/)", r"chapter \1", BLOCK.sub(text, source[0]))
 
 
 def setup(app):

@@ -28,17 +28,12 @@ GREEK = {
     "ω": "omega", "Ω": "omega",
 }  # fmt: skip
 LETTERS = {name: letter for letter, name in reversed(GREEK.items())} | {"Delta": "Δ", "Omega": "Ω"}
-COMMON = {
-    "a", "an", "and", "are", "as", "at", "be", "by", "for", "from", "has", "in", "is", "it", "its", "of", "on", "or",
-    "that", "the", "this", "to", "with",
-}  # fmt: skip
 LEFT_OUT = {"figures", "ledger"}  # the gallery repeats the chapters, and the ledger has a search of its own
 UNSAID = "math|svg|script|style|noscript|canvas|button|select|template"  # elements of a page that hold no sentences
 UNREAD = (
     nodes.section, nodes.title, nodes.literal_block, nodes.math_block, nodes.comment, nodes.image,
     nodes.substitution_definition, addnodes.desc, addnodes.desc_signature, addnodes.toctree, addnodes.index,
 )  # fmt: skip
-FIRST, SECOND = "chapters/", 0.6  # what comes first, and what the words of other pages count to those
 ASKED = 0.8  # what those of an exercise count to those of a section that explains
 IN_TITLE, IN_PAGE_TITLE = 5.0, 1.0  # what a word in a title is worth, to one in the text
 SATURATION, LENGTH = 1.2, 0.5  # of BM25
@@ -60,6 +55,10 @@ def words(text):
 
 def singular(word):
     return word[:-1] if len(word) > 3 and word.endswith("s") and word[-2] not in "sui0123456789" else word
+
+
+#: What says nothing of what is asked: the words on lines of search_words.txt that end in "=".
+COMMON = {word for line in WORDS.read_text("utf-8").splitlines() if line.endswith("=") for word in words(line)}
 
 
 def spoken(latex):
@@ -174,25 +173,28 @@ def packed(numbers):
 
 
 def aliases(text):
-    """Return what is typed and what the book says: [[typed, [said, ...]], ...], each cut into words.
+    """Return what is typed, what the book says, and what a reader must know: [[typed, [said, ...], note], ...].
+
+    What is typed is cut into words, without those of a question; the note is a sentence, often empty.
 
     Raises:
         ValueError: a line has no "=".
 
-    >>> aliases("ZN = Ziegler Nichols")
-    [['zn', ['ziegler nichol']]]
+    >>> aliases("ZN = Ziegler Nichols\\nroot locus = poles ! The books have none.")
+    [['zn', ['ziegler nichol'], ''], ['root locus', ['pole'], 'The books have none.']]
     """
     found = []
     for line in text.splitlines():
-        if not line.strip() or line.startswith("#"):
+        if not line.strip() or line.startswith("#") or line.endswith("="):
             continue
+        line, _, note = line.partition(" ! ")
         typed, sign, said = line.partition("=")
         if not sign:
             raise ValueError(f"search_words.txt has the line {line!r}: expected 'what one types = what the book says'")
         meant = [" ".join(words(part)) for part in said.split(",")]
         for part in typed.split(","):
-            one = " ".join(words(part))
-            found.append([one, [other for other in meant if other != one]])
+            one = " ".join(word for word in words(part) if word not in COMMON)
+            found.append([one, [other for other in meant if other != one], note.strip()])
     return found
 
 
@@ -209,7 +211,7 @@ def index(pages, titles):
     average = sum(lengths) / len(lengths)
     entries, places = {}, {}
     for number, (page, place, title, above, text, named) in enumerate(whole):
-        factor = (1 if names[page].startswith(FIRST) else SECOND) * (ASKED if place.startswith("exercise-") else 1)
+        factor = ASKED if place.startswith("exercise-") else 1
         counts = Counter(word for word in words(text) if word not in COMMON and not word[0].isdigit())
         weights = {
             word: count * (SATURATION + 1) / (count + SATURATION * (1 - LENGTH + LENGTH * lengths[number] / average))
@@ -236,6 +238,7 @@ def index(pages, titles):
             [page, place, title, above if above != titles[names[page]] else ""]
             for page, place, title, above, *_ in whole
         ],
+        "common": " ".join(sorted(COMMON)),
         "words": " ".join(ordered),
         "entries": " ".join(postings),
         "places": places,

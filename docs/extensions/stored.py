@@ -17,9 +17,10 @@ import launch
 import mathml
 import nbformat
 import permanent
+import reading
 import slugs
-from lazy_figures import is_wide
 from lessons import of_cell
+from light import is_wide
 from nbformat.v4.rwbase import rejoin_lines
 from sphinx import addnodes
 from sphinx.util.matching import Matcher
@@ -57,6 +58,8 @@ def page(path):
     whole = content["cells"]
     figures, taken = permanent.figures(whole), permanent.taken(whole)
     if folder == "chapters":
+        takes = f"about {reading.minutes(whole)} minutes with its code and lessons"
+        whole[0]["source"] = re.sub(r"about \d+ minutes", takes, whole[0]["source"], count=1)
         whole = with_functions(whole)
     cells = []
     for cell in whole:

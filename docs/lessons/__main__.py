@@ -25,17 +25,19 @@ def main():
     parser.add_argument("--positions", type=int, default=POSITIONS, help="of all sliders together (%(default)s)")
     asked = parser.parse_args()
     lessons = recorded()
-    for name in asked.names or lessons:
+    names = asked.names or [*lessons]
+    for number, name in enumerate(names, start=1):
         if name not in lessons:
             sys.exit(f"there is no recorded lesson {name!r}: docs/lessons/words.toml has their names")
         lesson, begin = lessons[name], time.perf_counter()
         why = reason(lesson, asked.all)
         if why:
-            text = as_text(recording(lesson.chapter, lesson.function, lesson.typed, asked.positions))
+            text = as_text(recording(lesson, asked.positions))
             lesson.file.parent.mkdir(exist_ok=True)
             lesson.file.write_text(text, encoding="utf-8", newline="\n")
             why = f"recorded, {len(text) / 1000:.0f} kB, because {why}"
-        print(f"{lesson.chapter}, {name}: {why or 'unchanged'} ({time.perf_counter() - begin:.0f} s)", flush=True)
+        took = f"{time.perf_counter() - begin:.0f} s; {number} of {len(names)}"
+        print(f"{lesson.chapter}, {name}: {why or 'unchanged'} ({took})", flush=True)
 
 
 def reason(lesson, whatever):

@@ -28,6 +28,11 @@ def desk(name, record):
         pictures += f'<div class="lesson-image"><img class="lesson-drawing" {source}></div>'
     keep = '<button type="button" class="lesson-keep" aria-pressed="false">Keep these curves in grey</button>'
     keep = keep if data["panels"] else ""
+    words = (
+        '<p class="lesson-words" aria-live="polite" title="Settled: it stays within 5 % of its change"></p>'
+        if data["panels"]
+        else ""
+    )
     silent = "" if said or any(data["verdicts"]) else " hidden"
     lines = any(data["verdicts"]) + (len(data["labels"]) + 1) // 2
     return f"""<div class="lesson-desk">
@@ -41,6 +46,7 @@ def desk(name, record):
 <noscript><p>{WAIT}</p></noscript>
 <p class="lesson-result" aria-live="polite" style="--lines: {lines}"{silent}>{said}</p>
 {pictures}
+{words}
 </div>"""
 
 

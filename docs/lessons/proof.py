@@ -3,8 +3,6 @@
 import itertools
 import random
 
-import numpy as np
-
 from lessons import moving, shapes
 from lessons.recording import answer_of, captured, code_of, needed, place_of
 
@@ -57,7 +55,7 @@ def one_difference(data, number, answer):
         return f"there are {len(here)} lines and areas, and recorded are {len(there)}"
     pairs = zip(sorted(there.items()), sorted(here.items()), strict=True)
     for (_, one), (key, other) in pairs:
-        if (far := apart(one, other)) > NEAR:
+        if (far := shapes.apart(shapes.decoded(one), shapes.decoded(other))) > NEAR:
             return f"{key[2] or key[1]} is {far:.1f} pixels from where it was"
     return ""
 
@@ -75,22 +73,3 @@ def numbers(seen):
 def key_of(item):
     """What an item is recognised by."""
     return item["panel"], item["kind"], item["label"], item["light"], str(item.get("dash"))
-
-
-def apart(one, other):
-    """The largest distance of two shapes, in pixels: of the corners of each from the lines of the other."""
-    return max(distance(one, other), distance(other, one))
-
-
-def distance(corners, line):
-    """The largest distance of the corners of a shape from the lines of another one."""
-    points = np.array([point for piece in shapes.decoded(corners) for point in piece]) * shapes.STEP
-    nearest = np.full(len(points), np.inf)
-    for piece in shapes.decoded(line):
-        ends = np.array(piece) * shapes.STEP
-        starts, ways = ends[:-1] if len(ends) > 1 else ends, np.diff(ends, axis=0) if len(ends) > 1 else 0 * ends
-        for start, way in zip(starts, ways, strict=True):
-            length = way @ way
-            share = np.clip((points - start) @ way / length, 0, 1) if length else np.zeros(len(points))
-            nearest = np.minimum(nearest, np.hypot(*(points - start - share[:, None] * way).T))
-    return float(nearest.max())

@@ -1,5 +1,6 @@
 """What a finished figure shows, taken out of it again: lines, areas, points, words and axes, as shapes and HTML."""
 
+import functools
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -39,6 +40,11 @@ class Part:
     label: str
     pieces: list
     order: float = 0
+
+    @functools.cached_property
+    def letters(self):
+        """Its shape as letters."""
+        return shapes.encoded(self.pieces) if self.pieces else ""
 
 
 @dataclass

@@ -15,11 +15,14 @@ import json
 import math
 import os
 import re
+import sys
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import nbformat
+from rich.console import Console
+from rich.progress import track
 
 import loopbook.sliders
 from lessons import moving
@@ -31,14 +34,14 @@ from loopbook.sliders import _control
 from plainmath.tables import Table, is_symbol, symbol
 
 ROOT = Path(__file__).resolve().parents[2]
-POSITIONS = 500  # of all sliders of a lesson together, at most
-LARGEST = 140_000  # characters of a recording
-FEWEST = 40  # positions, whatever they take
+POSITIONS = 2000  # of all sliders of a lesson together, at most
+LARGEST = 300_000  # characters of a recording
+FEW = 10  # values of a slider that do not become fewer
 
 
 @dataclass(frozen=True)
 class Knob:
-    """A slider of a cell: its parameter, label and unit, all its values, the one at the start, and words for them."""
+    """A slider of a cell: its parameter, label and unit, values, the one at the start, words, what a text names."""
 
     name: str
     label: str
@@ -46,12 +49,12 @@ class Knob:
     values: tuple
     start: object
     words: bool = False
+    named: tuple = ()
 
     def thinned(self, stride):
-        """The same with every so many values only, the start and both ends among them."""
-        first, last = self.values.index(self.start), len(self.values) - 1
-        keep = [k for k in range(last + 1) if (k - first) % stride == 0 or k in (0, last)]
-        return Knob(self.name, self.label, self.unit, tuple(self.values[k] for k in keep), self.start, self.words)
+        """The same with every so many values only, the start and those that a text names among them."""
+        even = self.values[self.values.index(self.start) % stride :: stride]
+        return replace(self, values=tuple(value for value in self.values if value in even or value in self.named))
 
     @property
     def shown(self):
@@ -201,19 +204,15 @@ def knobs_of(function, labels, instead_of_typing=()):
 
 
 def thinned(knobs, most):
-    """The sliders with so few values that there are at most so many positions; the longest ones become coarser."""
-    strides = [1] * len(knobs)
-    while True:
-        thin = [knob.thinned(stride) for knob, stride in zip(knobs, strides, strict=True)]
-        if math.prod(len(knob.values) for knob in thin) <= most:
-            return thin
-        choice = [k for k, knob in enumerate(thin) if not knob.words and len(knob.values) > 3]
+    """The sliders with so few values that there are at most so many positions; the last ones become coarser first."""
+    thin, strides = list(knobs), [1] * len(knobs)
+    while math.prod(len(knob.values) for knob in thin) > most:
+        choice = [k for k, knob in enumerate(thin) if not knob.words and len(knob.values) > FEW]
         if not choice:
             return thin
-        longest = max(choice, key=lambda k: len(thin[k].values))
-        before = len(thin[longest].values)
-        while len(knobs[longest].thinned(strides[longest]).values) == before:
-            strides[longest] += 1
+        strides[choice[-1]] += 1
+        thin[choice[-1]] = knobs[choice[-1]].thinned(strides[choice[-1]])
+    return thin
 
 
 def answer_of(function, values):
@@ -252,19 +251,19 @@ def quantities_of(found):
     return told
 
 
-def recording(chapter, function, instead_of_typing=(), most=POSITIONS):
+def recording(lesson, most=POSITIONS):
     """Return the recording of a cell: what a lesson's page needs, and the cell's code as a number.
 
     Arguments:
-        chapter, function: where the cell is.
-        instead_of_typing: as of `knobs_of`.
+        lesson: a `Recorded`.
         most: positions of all the sliders together.
     Raises:
         ValueError: if the cell's first figure is not the one that the notebook stores.
     """
-    cells, at = place_of(chapter, function)
+    cells, at = place_of(lesson.chapter, lesson.function)
     call, labels = captured(needed(cells, at))
-    knobs = knobs_of(call, labels, instead_of_typing)
+    knobs = knobs_of(call, labels, lesson.typed)
+    knobs = [replace(knob, named=tuple(lesson.named.get(knob.name, ()))) for knob in knobs]
     known = {}
 
     def answer(values):
@@ -275,10 +274,9 @@ def recording(chapter, function, instead_of_typing=(), most=POSITIONS):
     alt = alt_at_start(call, knobs)
     stored = next((o.metadata["image/png"]["alt"] for o in cells[at].outputs if "image/png" in o.get("data", {})), alt)
     if alt != stored:
-        raise ValueError(f"{chapter}, {function}: the cell shows {stored!r}, and the recording {alt!r}")
-    most = min(most, int(0.95 * LARGEST / size_of(thinned(knobs, most), answer)))
-    while len(text_of(data := data_of(thin := thinned(knobs, max(FEWEST, most)), answer))) > LARGEST and most > FEWEST:
-        most = int(0.9 * most)
+        raise ValueError(f"{lesson.chapter}, {lesson.function}: the cell shows {stored!r}, and the recording {alt!r}")
+    while (size := len(text_of(data := data_of(thin := thinned(knobs, most), answer)))) > LARGEST and len(thin) > 1:
+        most = int(0.9 * math.prod(len(knob.values) for knob in thin) * LARGEST / size)
     return {
         "code": code_of(cells, at),
         "alt": alt,
@@ -302,18 +300,10 @@ def alt_at_start(function, knobs):
 
 def data_of(knobs, answer):
     """The page's data for sliders, asking for every answer once."""
-    answers = [answer(values) for values in itertools.product(*(knob.values for knob in knobs))]
-    return moving.told(answers, [len(k.values) for k in knobs], [k.values.index(k.start) for k in knobs])
-
-
-def size_of(knobs, answer):
-    """About how many characters a position takes."""
     positions = list(itertools.product(*(knob.values for knob in knobs)))
-    some = positions[:: max(1, len(positions) // 17)]
-    answers = [answer(values) for values in some]
-    counts, start = [len(some)], [0]
-    one = len(text_of(moving.told(answers[:1], [1], [0])))
-    return max(60, (len(text_of(moving.told(answers, counts, start))) - one) / max(1, len(some) - 1))
+    bar = {"console": Console(stderr=True), "transient": True, "disable": not sys.stderr.isatty()}
+    answers = [answer(values) for values in track(positions, "  positions of the sliders", **bar)]
+    return moving.told(answers, [len(k.values) for k in knobs], [k.values.index(k.start) for k in knobs])
 
 
 def text_of(data):

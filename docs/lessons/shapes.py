@@ -18,7 +18,8 @@ LIFT = FARTHEST + 1  # the letter that lifts the pen: what follows is another pi
 BASE = len(ALPHABET)
 ROOM = 0.08  # beyond the frame, in shares of it: as much of a line as its width may need
 STEP = np.array([0.65, 0.26])  # pixels of a step, of a picture as a page shows it
-CLOSE = 0.3  # pixels by which a line may be elsewhere
+CLOSE = 0.5  # pixels by which a line may be elsewhere
+UPRIGHT = 0.001  # of a way up or down, so that an upright part of a line has a beginning and an end
 
 
 def encoded(pieces, close=CLOSE):
@@ -28,10 +29,15 @@ def encoded(pieces, close=CLOSE):
         pieces: of corners, as arrays of (share of the width from the left, share of the height from the bottom).
         close: pixels by which the line may be elsewhere.
     """
+    steps = (few(np.column_stack([piece[:, 0] * WIDE, (1 - piece[:, 1]) * TALL]), close) for piece in pieces)
+    return in_letters(steps)
+
+
+def in_letters(pieces):
+    """Return pieces in steps as letters."""
     written, place = [], np.zeros(2, dtype=int)
-    for piece in pieces:
-        steps = np.column_stack([piece[:, 0] * WIDE, (1 - piece[:, 1]) * TALL])
-        corners = np.rint(few(steps, close)).astype(int)
+    for corners in pieces:
+        corners = np.rint(corners).astype(int)
         keep = np.r_[True, (np.diff(corners, axis=0) != 0).any(axis=1)]
         corners = corners[keep] if keep.sum() > 1 else corners[:1]
         ways = np.diff(np.vstack([place, corners]), axis=0)
@@ -78,6 +84,56 @@ def decoded(text):
             pieces[-1].append(tuple(place))
             way = []
     return pieces
+
+
+def between(one, other, share):
+    """Return the pieces of a shape between two others, as arrays in steps; None where they have not as many pieces.
+
+    Corners belong together that are as far along the shape, mainly from left to right; lessons.js does the same.
+
+    Arguments:
+        one, other: letters.
+        share: of the way from one to the other.
+    """
+    pairs = decoded(one), decoded(other)
+    if len(pairs[0]) != len(pairs[1]):
+        return None
+    found = []
+    for first, last in zip(*pairs, strict=True):
+        ways = along(first), along(last)
+        places = np.unique(np.concatenate(ways))
+        ends = (
+            np.column_stack([np.interp(places, way, np.array(piece)[:, k]) for k in (0, 1)])
+            for way, piece in zip(ways, (first, last), strict=True)
+        )
+        found.append((1 - share) * next(ends) + share * next(ends))
+    return found
+
+
+def along(piece):
+    """How far each corner of a piece is along it, from 0 to 1."""
+    ways = np.abs(np.diff(piece, axis=0)) @ (1, UPRIGHT)
+    return np.r_[0, np.cumsum(ways)] / (ways.sum() or 1)
+
+
+def apart(one, other):
+    """The largest distance of two shapes, in pixels: of the corners of each from the lines of the other.
+
+    Arguments:
+        one, other: pieces, in steps.
+    """
+    return max(distance(one, other), distance(other, one))
+
+
+def distance(corners, lines):
+    """The largest distance of the corners of a shape from the lines of another one."""
+    points = np.vstack(corners)[:, None] * STEP
+    starts = np.vstack([piece if len(piece) == 1 else piece[:-1] for piece in map(np.asarray, lines)]) * STEP
+    ways = np.vstack([[[0, 0]] if len(piece) == 1 else np.diff(piece, axis=0) for piece in lines]) * STEP
+    lengths = (ways**2).sum(axis=1)
+    shares = ((points - starts) * ways).sum(axis=2) / np.where(lengths, lengths, 1)
+    far = points - starts - np.clip(shares, 0, 1)[..., None] * ways
+    return float(np.sqrt((far**2).sum(axis=2).min(axis=1).max()))
 
 
 def drawn(text, closed=False):

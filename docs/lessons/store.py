@@ -4,7 +4,7 @@ import functools
 import json
 import re
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from plainmath.validation import did_you_mean
@@ -23,6 +23,7 @@ class Recorded:
         title, about, questions: of the lesson, what is shown and what to try; Markdown, with mathematics. The text of
             the chapter above the cell has most of them.
         typed: texts to choose from where the cell has a field to type in.
+        named: {slider: values} that a text names, and that can be set where a slider has become coarser.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Recorded:
     about: str = ""
     questions: tuple = ()
     typed: tuple = ()
+    named: dict = field(default_factory=dict)
 
     @property
     def file(self):

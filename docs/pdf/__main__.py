@@ -16,7 +16,7 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(ROOT / "tests" / "site"), str(HERE.parent / "extensions")]
 
-from on_paper import WHOLE_BOOK  # noqa: E402
+from reading import WHOLE_BOOK  # noqa: E402
 
 import browser  # noqa: E402 - of tests/site/, which has just become a place to import from
 import repository  # noqa: E402 - of docs/extensions/
@@ -70,7 +70,9 @@ def made(chromium, site: Path, book: list[dict]) -> bytes:
         page.goto(f"{address}{book[0]['pages'][0]}")
         page.evaluate(ASSEMBLE, {"address": address, "parts": book, "title": TITLE, "about": ABOUT})
         page.add_style_tag(path=HERE / "look.css")
+        print("printing all pages: once for their numbers", flush=True)
         lines = page.evaluate(NUMBER, numbers(printed(page)))
+        print(f"and once more, with {len(lines)} lines of contents", flush=True)
         pdf = printed(page)
         page.close()
     return with_bookmarks(pdf, lines)
@@ -95,7 +97,7 @@ def link(site: Path) -> None:
         text = page.read_text(encoding="utf-8")
         if WHOLE_BOOK in text:
             up = "../" * (len(page.relative_to(site).parts) - 1)
-            text = text.replace(WHOLE_BOOK, f', <a href="{up}{FILE}">the whole book</a> (PDF)')
+            text = text.replace(WHOLE_BOOK, f'<span><a href="{up}{FILE}">The whole book</a> (PDF)</span>')
             page.write_text(text, encoding="utf-8")
 
 
@@ -104,3 +106,4 @@ if __name__ == "__main__":
     with browser.opened() as chromium:
         (site / FILE).write_bytes(made(chromium, site, parts(site)))
     link(site)
+    print(f"{site / FILE} is made", flush=True)

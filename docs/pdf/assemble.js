@@ -6,8 +6,8 @@
 //             sections are in the contents too
 //   title, about   what is on the first sheet
 async ({ address, parts, title, about }) => {
-  const SCREEN = "script, noscript, button, form, details.check, details.hide, .headerlink, .lesson-controls, p.opening, p.functions, "
-    + "p.slider-note, p.exercise-links, .content-icon-container";
+  const SCREEN = "script, noscript, button, form, details.check, p.means, details.hide, .headerlink, .lesson-controls, p.opening, p.switches, p.functions, "
+    + "p.exercise-links, .content-icon-container";
   const keyOf = (name) => name.replace(/\.html$/, "").replace(/[^\w]+/g, "-");
   const pages = new Map();
   for (const name of parts.flatMap((part) => part.pages)) {
@@ -33,6 +33,7 @@ async ({ address, parts, title, about }) => {
     const { key, url, content } = page;
     const article = content.querySelector("article");
     article.querySelectorAll(SCREEN).forEach((part) => part.remove());
+    article.querySelectorAll("details.further > summary").forEach((part) => part.replaceWith(made("p", {}, ...part.childNodes)));
     article.querySelectorAll("details").forEach((part) => part.replaceWith(...part.childNodes));
     article.querySelectorAll("summary").forEach((part) => part.remove());
     article.querySelectorAll("[id]:not(svg, svg *)").forEach((part) => { part.id = `${key}--${part.id}`; });

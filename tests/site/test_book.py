@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 START = "00_start"  # what leads readers of JupyterLab to the chapters; the site has a front page
 CHAPTERS = [path for path in sorted(ROOT.glob("chapters/*.ipynb")) if path.stem != START]
-LARGEST = 1_000_000  # bytes of a page without its figures
+LARGEST = 600_000  # bytes of a page without its figures
 EMPTY = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 OPTIONAL = {"dd", "dt", "li", "p", "tbody", "td", "tfoot", "th", "thead", "tr"}  # whose end HTML lets one leave out
 FETCHED = {

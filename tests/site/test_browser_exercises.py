@@ -364,7 +364,7 @@ class TestOwnNumbers:
         mine = exercise("10.1", "Mira")
         assert form.locator(".statement").inner_text() != before
         expect(form.field("K")).to_have_value("")
-        expect(reader.exercise("10.2").locator("button.own")).to_have_text("Numbers of Mira")
+        expect(reader.exercise("10.2").locator(".whose")).to_have_text("numbers of Mira")
         form.check(**{name: f"{kind.key:.8g}" for name, kind in mine.key.items()})
         expect(form.says).to_contain_text("Right.")
         assert reader.remembered["answered"] == {"10.1 Mira": True}
@@ -382,13 +382,25 @@ class TestOwnNumbers:
         reader.page.evaluate("localStorage.loopbook = JSON.stringify({ student: 'Noor' })")
         reader.page.reload()
         form = reader.exercise("10.1")
-        expect(form.says).to_contain_text("Above are the numbers that everybody has.")
+        expect(form.locator(".state .whose")).to_have_text("everybody's numbers")
         assert reader.requests == []
+        form.get_by_role("button", name="Show the numbers of Noor").click()
+        expect(form.says).to_have_text("These are the numbers of Noor.")
+        expect(reader.page.get_by_text("numbers of Noor", exact=True)).to_have_count(
+            reader.page.locator("button.own").count()
+        )  # of all cards at once
+        expect(reader.page.get_by_text("everybody's numbers")).to_have_count(0)
+
+    def test_the_first_answer_under_other_numbers_changes_all_cards(self, reader):
+        reader.go()
+        reader.page.evaluate("localStorage.loopbook = JSON.stringify({ student: 'Noor' })")
+        reader.page.reload()
+        form = reader.exercise("10.1")
         form.check(K="1.5")
         expect(form.says).to_have_text("These are the numbers of Noor. Answer these.")
-        other = reader.exercise("10.3")
-        other.get_by_role("button", name="Show the numbers of Noor").click()
-        expect(other.locator(".answer")).to_have_text("These are the numbers of Noor.")
+        expect(reader.page.get_by_text("numbers of Noor", exact=True)).to_have_count(
+            reader.page.locator("button.own").count()
+        )
 
     def test_no_name_is_said_and_nothing_changes(self, reader):
         reader.go()

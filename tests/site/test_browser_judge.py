@@ -25,8 +25,8 @@ from loopbook.exercises.forms import answer
 ROOT = Path(__file__).parents[2]
 STATIC = ROOT / "docs" / "_static"
 ASKED = {"do": "check", "exercise": "7.1", "student": None, "answers": {"I": "14.4 mA", "p": "0.85 MPa", "gain": "2"}}
-#: A word in an answer with which the judge of these tests never comes to an end.
-ENDLESS = "endless"
+#: Words in an answer with which the judge of these tests never comes to an end: in Python, and below it.
+ENDLESS, DEAF = "endless", "deaf"
 
 
 # What the site consists of.
@@ -286,6 +286,8 @@ _reply = Judge.reply
 def _endless(self, text):
     while {ENDLESS!r} in text:
         pass
+    if {DEAF!r} in text:
+        sum(iter(int, 1))
     return _reply(self, text)
 Judge.reply = _endless
 """
@@ -296,6 +298,11 @@ Judge.reply = _endless
 
 def ask(page, **request):
     return browser_runtime.ask(page, ASKED | request)["reply"]
+
+
+def end_python(page):
+    """Let the next question start Python anew, as if none were left from another page."""
+    page.evaluate("localStorage['loopbook python'] = 1 + Number(localStorage['loopbook python'] ?? 0)")
 
 
 #: Cuts a file that the browser keeps to its half.
@@ -343,6 +350,7 @@ class TestInTheBrowser:
         page = context.new_page()
         page.goto(small.address + "one.html")
         page.evaluate(DAMAGE, "pyodide.asm.wasm")
+        end_python(page)
         small.asked.clear()
         assert ask(page) == json.loads(answer(json.dumps(ASKED)))
         assert [one.split("/")[-1].split("?")[0] for one in small.asked if "wasm" in one] == ["pyodide.asm.wasm"]
@@ -353,12 +361,14 @@ class TestInTheBrowser:
         page = context.new_page()
         page.goto(small.address + "one.html")
         assert page.inner_text("h1") == "one"
+        end_python(page)
         assert ask(page) == json.loads(answer(json.dumps(ASKED)))
         assert any("remembers" in says for _, says in page.evaluate("said"))
 
-        # an answer without end takes its Python with it, and the next one has a new one
-        assert re.match(r"ended after \d+ s: ", ask(page, answers={"p": ENDLESS}))
-        assert ask(page) == json.loads(answer(json.dumps(ASKED)))
+        # an answer without end is ended; where Python cannot, the next answer has a new Python
+        for word in (ENDLESS, DEAF):
+            assert re.match(r"ended after \d+ s: ", ask(page, answers={"p": word}))
+            assert ask(page) == json.loads(answer(json.dumps(ASKED)))
 
         # and one that is nested as deeply as can be is refused
         refused, _ = ask(page, exercise="4.1", answers={"F": "-" * 3900 + "s"})["verdicts"]
@@ -370,6 +380,43 @@ class TestInTheBrowser:
         assert page.inner_text("h1") == "No network"
         assert page.eval_on_selector_all("li a", "links => links.map(link => link.innerText)") == ["one.html"]
         assert complaints == []
+        context.close()
+
+    def test_all_pages_share_one_python_and_none_keeps_it_from_the_others(self, chromium, small):
+        context = chromium.new_context()
+        page = context.new_page()
+        page.goto(small.address + "one.html")
+        ask(page)
+        small.asked.clear()
+        page.goto(small.address + "two.html")
+        assert ask(page) == json.loads(answer(json.dumps(ASKED)))
+        other = context.new_page()
+        other.goto(small.address + "one.html")
+        assert ask(other) == json.loads(answer(json.dumps(ASKED)))
+        assert [one for one in small.asked if one.startswith(("wheels", "runtime"))] == []
+        assert page.evaluate("said") == other.evaluate("said") == [], "nobody waited for Python"
+
+        assert re.match(r"ended after \d+ s: ", ask(page, answers={"p": ENDLESS}))
+        assert page.evaluate("localStorage['loopbook python']") is None, "Python outlives that"
+
+        # while one page waits for what never ends, another one asks
+        late = json.dumps(ASKED | {"answers": {"p": DEAF}})
+        page.evaluate(f"window.late = judge.ask({late}).catch((error) => error.message), undefined")
+        assert ask(other) == json.loads(answer(json.dumps(ASKED)))
+        assert re.match(r"ended after \d+ s: ", page.evaluate("late"))
+        assert page.evaluate("localStorage['loopbook python']") == "1"
+        assert ask(page) == json.loads(answer(json.dumps(ASKED)))
+        context.close()
+
+    def test_a_browser_without_shared_workers_has_a_python_for_each_page(self, chromium, small):
+        context = chromium.new_context()
+        context.add_init_script("delete window.SharedWorker")
+        page = context.new_page()
+        page.goto(small.address + "one.html")
+        assert ask(page) == json.loads(answer(json.dumps(ASKED)))
+        for word in (ENDLESS, DEAF):
+            assert re.match(r"ended after \d+ s: ", ask(page, answers={"p": word}))
+            assert ask(page) == json.loads(answer(json.dumps(ASKED)))
         context.close()
 
     def test_what_is_missing_or_changed_is_told_and_tried_again(self, chromium, small):

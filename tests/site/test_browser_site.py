@@ -1,9 +1,17 @@
 """The site in a browser: its pages, its links and switches, its live lessons; and an audit."""
 
+import importlib
+import re
+import sys
+from pathlib import Path
+
 import pytest
 from playwright.sync_api import expect
 
 from browser import DESKTOP, PATIENCE, PHONE, SCREENSHOTS, WATCH, Complaints, seen, serious, served
+
+sys.path.append(str(Path(__file__).parents[2] / "docs"))
+lessons, moving, shapes = (importlib.import_module(name) for name in ("lessons", "lessons.moving", "lessons.shapes"))
 
 #: A page of each kind.
 KINDS = {
@@ -101,7 +109,7 @@ class TestSite:
         expect(said).to_contain_text(" of ")
         first = rows.count()
         assert first
-        reader.page.get_by_label("What was done").select_option("corrected")
+        reader.page.get_by_label("Verdict").select_option("corrected")
         reader.page.get_by_label("Search", exact=True).last.fill("exp(-tau*s)")
         expect(rows).not_to_have_count(first)
         reader.page.get_by_role("button", name="Start again").click()
@@ -247,6 +255,27 @@ class TestSite:
         lesson.get_by_role("button", name="Back to the start").click()
         assert drawn(lesson) == start
         assert grey(lesson) == ""
+
+    def test_a_lesson_draws_between_what_is_recorded_and_says_what_is_seen(self, reader):
+        reader.go("chapters/10_tuning.html")
+        lesson = reader.page.locator("#lesson-by_hand")
+        begin(lesson)
+        words = lesson.locator(".lesson-words")
+        expect(words).to_have_text(re.compile(r"^oven rises to .*K, .*; after cold load it .*\. u .*\.$"))
+        assert words.get_attribute("aria-live") == "polite"
+        data = lessons.load("by_hand").record()["data"]
+        oven = next(k for k, item in enumerate(data["items"]) if item["label"] == "oven")
+        column = data["items"][oven]["line"]
+        for number in [k for k, line in enumerate(column) if line == moving.BETWEEN][::200]:
+            before = words.inner_text()
+            gain, integral_time = divmod(number, data["counts"][1])
+            for knob, value in zip(lesson.locator("input").all(), (gain, integral_time), strict=True):
+                knob.evaluate("(knob, value) => { knob.value = value; knob.dispatchEvent(new Event('input')); }", value)
+            assert words.inner_text() != before
+            for k, shape in enumerate(moving.view(data, number).shapes):
+                (piece,) = lesson.locator(f'path[data-item="{k}"]').get_attribute("d")[1:].removesuffix("Z").split("M")
+                seen = [[[*map(float, corner.split())] for corner in piece.split("L")]]
+                assert shapes.apart(seen, shapes.decoded(shape)) < 1
 
     def test_a_lesson_obeys_the_keyboard_in_a_page_from_a_disk(self, chromium, addresses):
         reader = Reader(chromium, addresses["file"])

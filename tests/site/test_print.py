@@ -38,7 +38,7 @@ class TestPaper:
         page.goto((book / "chapters" / f"{name}.html").as_uri())
         title = page.title().removesuffix(" - loopbook")
         page.evaluate("window.print = () => { window.printed = true; }")
-        page.get_by_role("button", name="the core").click()
+        page.get_by_role("group", name="Print").get_by_role("button", name="the core").click()
         page.wait_for_function("window.printed", timeout=browser.PATIENCE)
         page.emulate_media(media="print")
         headings = [heading.text_content() for heading in page.locator("article h2").all() if heading.is_visible()]

@@ -91,13 +91,15 @@ def execute(
         fail("no notebooks here: name some, or run this in the folder that holds chapters")
     failed = 0
     try:
-        with console.status(f"executing {len(chosen)} notebooks"):
-            for path, seconds, changed, error in notebooks.execute_all(chosen):
+        with console.status(f"executing {len(chosen)} notebooks") as status:
+            for count, (path, seconds, changed, error) in enumerate(notebooks.execute_all(chosen), start=1):
+                status.update(so_far := f"{count} of {len(chosen)} notebooks executed")
                 if error:
                     failed += 1
                     errors.print(str(error), style="bold red", markup=False)
                 else:
-                    console.print(f"{path}: {'stored' if changed else 'unchanged'} ({seconds:.0f} s)", markup=False)
+                    says = f"{path}: {'stored' if changed else 'unchanged'} ({seconds:.0f} s)"
+                    console.print(says if console.is_terminal else f"{says}, {so_far}", markup=False)
     except KeyboardInterrupt:
         # An ordinary exit would wait for the running cells; the kernels end by themselves once this process is gone.
         errors.print("interrupted; the notebooks not named above are as they were", style="bold red")
