@@ -45,7 +45,6 @@ from loopbook import s, t
 from loopbook.approximation import half_rule, pade, taylor
 from loopbook.integrals import residue_method
 from loopbook.laplace import transform
-from loopbook.latex import latex
 from loopbook.oscillation import Oscillation
 from loopbook.pid import PID
 from loopbook.transfer import (
@@ -60,6 +59,7 @@ from loopbook.transfer import (
     static_gain,
     step_response,
 )
+from plainmath.latex import latex
 
 
 def laplace_pairs():

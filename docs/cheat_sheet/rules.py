@@ -26,9 +26,9 @@ from cheat_sheet.stated import (
     RELAY,
 )
 from loopbook.approximation import SOPDT, pade
-from loopbook.latex import latex
 from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.tuning import RULES, simc
+from plainmath.latex import latex
 
 
 def skogestad():

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import sympy
 
-from loopbook.latex import latex
+from plainmath.latex import latex
 
 
 @dataclass(frozen=True)

@@ -914,7 +914,7 @@ def test_a_report_carries_its_verdicts_as_data():
         ("better", "says so", "divided", GOOD["better"].told(), True, "evidence"),
     ]
     H, is_large = data["verdicts"][1], data["verdicts"][-5]
-    assert H["tex"]["computed"] == H["tex"]["book"] == r"$\displaystyle \frac{K}{T s + 1}$"
+    assert H["tex"]["computed"] == H["tex"]["book"] == r"$\displaystyle \dfrac{K}{T s + 1}$"
     assert is_large["tex"] == {"computed": r"gain $\displaystyle K T$ > 0, proved"}
     assert is_large["evidence"] == positive(K * T, "gain").data
     failed = MIXED.compare(**GOOD | {"a": 1})._repr_mimebundle_()[MIME_TYPE]["verdicts"]

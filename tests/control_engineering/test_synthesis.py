@@ -512,5 +512,5 @@ def test_letters_that_a_high_degree_hides():
 def test_a_design_and_a_match_are_shown_as_formulas():
     design = imc_design(integrator(2, delay=3), Tc=1)
     assert design._repr_html_().count("<tr>") == 6
-    assert design.match._repr_latex_() == r"$\displaystyle K_p = \frac{5}{32}, \quad T_i = 5$, exact"
+    assert design.match._repr_latex_() == r"$\displaystyle K_p = \dfrac{5}{32}, \quad T_i = 5$, exact"
     assert as_pid(1 / (1 - sympy.exp(-2 * s)), "PI")._repr_latex_().endswith("$, the first terms of a series")

@@ -43,7 +43,7 @@ def test_the_unit_stands_behind_the_value_and_symbols_are_typeset():
 
 
 def test_a_formula_is_typeset_and_text_cannot_become_html():
-    assert r"\frac{1}{3}" in quantities(K=sympy.Rational(1, 3))._repr_html_()
+    assert r"\dfrac{1}{3}" in quantities(K=sympy.Rational(1, 3))._repr_html_()
     assert "<b>" not in table(["<b>"], {"<b>": ["<b>"]}, of="<b>")._repr_html_()
 
 

@@ -30,7 +30,7 @@ INSIDE = "exercisegrader.inside."
 #: The order in which a reader meets the modules of loopbook; the groups on one line do not know each other.
 ORDER = [
     ["types"],
-    ["expressions", "latex", "tables"],
+    ["expressions", "tables"],
     ["laplace"],
     ["transfer"],
     ["oscillation"],

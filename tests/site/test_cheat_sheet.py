@@ -15,11 +15,11 @@ from loopbook.approximation import SOPDT, pade, taylor, zero_rule
 from loopbook.deadtime import System
 from loopbook.identification import relay_experiment
 from loopbook.integrals import ise, pi_first_order
-from loopbook.latex import latex
 from loopbook.stability import margins
 from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.transfer import first_order
 from loopbook.tuning import RULES, simc
+from plainmath.latex import latex
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs"))

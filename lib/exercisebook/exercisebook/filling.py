@@ -10,6 +10,7 @@ from typing import Any
 import sympy
 
 from exercisebook.parameters import written
+from plainmath.latex import latex
 from plainmath.tables import rounded
 
 #: Significant digits of a number that a solution works out.
@@ -41,7 +42,7 @@ def shown(value: Any, unit: str = "") -> Shown:
     if isinstance(value, str):
         return Shown(value, value)
     if isinstance(value, sympy.Basic) and not (value.is_Number or value.is_NumberSymbol):
-        formula = sympy.latex(_in_decimals(value), full_prec=False)
+        formula = latex(_in_decimals(value)).replace("dfrac", "frac")
         return Shown(formula, f"${formula}$")
     mantissa, _, exponent = rounded(float(value), DIGITS).partition("e")
     mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa

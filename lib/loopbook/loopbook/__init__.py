@@ -11,9 +11,13 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+import sys
 from typing import TYPE_CHECKING
 
+from sympy.printing.defaults import Printable
+
 from plainmath.expressions import s, t
+from plainmath.tables import typeset
 
 # the chapters, exercises and ledgers are a package of their own, with names within this one
 __path__ = pkgutil.extend_path(__path__, __name__)
@@ -59,3 +63,13 @@ def __getattr__(name: str) -> object:
 
 def __dir__() -> list[str]:
     return sorted(__all__)
+
+
+def _write_formulas_as_books_do() -> None:
+    """Let a notebook show SymPy's formulas with falling powers of s, as K e^(-tau s)/(T s + 1)."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    if shell is not None:
+        shell.display_formatter.formatters["text/latex"].for_type(Printable, typeset)
+
+
+_write_formulas_as_books_do()

@@ -15,7 +15,8 @@ import sympy
 from loopbook.scaling import PERCENT, Scaling
 from loopbook.transfer import transfer_function
 from loopbook.types import Number
-from plainmath.expressions import equalities, exact, s, written
+from plainmath.expressions import exact, s, written
+from plainmath.latex import equalities
 from plainmath.validation import (
     exact_nonzero,
     exact_not_negative,

@@ -10,6 +10,7 @@ import sympy
 
 from loopbook.types import Number
 from plainmath.expressions import exact
+from plainmath.latex import latex
 from plainmath.validation import is_number
 
 __all__ = ["PERCENT", "Scaling"]
@@ -79,7 +80,7 @@ class Scaling:
         return f"Scaling({self.x_range}, {self.z_range})"
 
     def _repr_latex_(self):
-        return f"$z = {sympy.latex(self.a * sympy.Symbol('x') + self.b)}$"
+        return f"$z = {latex(self.a * sympy.Symbol('x') + self.b)}$"
 
 
 def _ends(given):

@@ -8,7 +8,6 @@ from __future__ import annotations
 import ast
 import functools
 import random
-from collections.abc import Mapping
 from fractions import Fraction
 
 import mpmath
@@ -349,19 +348,6 @@ def written(value: sympy.Expr) -> str:
     ('2/3', '2.99852')
     """
     return f"{float(value):.6g}" if _is_long(value) else str(value)
-
-
-def equalities(values: Mapping[str, sympy.Expr]) -> str:
-    r"""Return named values as LaTeX between dollar signs, for the display of settings and models.
-
-    Arguments:
-        values: ``{symbol as LaTeX: value}``.
-
-    >>> print(equalities({"K_p": sympy.Rational(1, 2), "T_i": 3 * sympy.Symbol("tau")}))
-    $\displaystyle K_p = \frac{1}{2}, \quad T_i = 3 \tau$
-    """
-    shown = (f"{x} = {written(value) if _is_long(value) else sympy.latex(value)}" for x, value in values.items())
-    return r"$\displaystyle " + r", \quad ".join(shown) + "$"
 
 
 def _is_long(value):

@@ -22,12 +22,12 @@ from typing import Any
 
 import sympy
 
+from plainmath.latex import GREEK, latex
+
 __all__ = [
     "Table", "aligned", "is_symbol", "marked", "plain_words", "quantities", "rounded", "symbol", "table", "typeset",
 ]  # fmt: skip
 
-_GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi",
-          "pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega"}  # fmt: skip
 _LEFT = 'style="text-align:left"'  # JupyterLab would centre the heads and align texts to the right
 _LARGEST_DENOMINATOR = 12  # a fraction with a larger one says less than a decimal number
 _RIGHT = 'style="text-align:right"'
@@ -243,16 +243,9 @@ def typeset(expression: Any) -> str:
 
     >>> from plainmath.expressions import parse
     >>> typeset(parse("K/(T*s + 1)"))
-    '$\\\\displaystyle \\\\frac{K}{T s + 1}$'
+    '$\\\\displaystyle \\\\dfrac{K}{T s + 1}$'
     """
-    words = {x: rf"\mathrm{{{x}}}" for x in getattr(expression, "free_symbols", ()) if _is_word(str(x))}
-    latex = sympy.latex(expression, symbol_names=words, mul_symbol=r"\," if words else None)
-    return rf"$\displaystyle {latex}$"
-
-
-def _is_word(name):
-    """Whether a symbol's name is a word, such as a unit, and no letter."""
-    return len(name) > 2 and name.isalpha() and name not in _GREEK
+    return rf"$\displaystyle {latex(expression)}$"
 
 
 def is_symbol(name: str) -> bool:
@@ -262,7 +255,7 @@ def is_symbol(name: str) -> bool:
     (True, True, False, False)
     """
     letter, _, index = name.partition("_")
-    is_letter = (len(letter) == 1 and letter.isalpha()) or letter in _GREEK
+    is_letter = (len(letter) == 1 and letter.isalpha()) or letter in GREEK
     return is_letter and len(index) <= 3 and "_" not in index
 
 

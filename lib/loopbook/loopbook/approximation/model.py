@@ -12,7 +12,8 @@ import sympy
 from loopbook.laplace import by_delay, roots
 from loopbook.transfer import dead_time, transfer_function
 from loopbook.types import Number, TransferFunctionLike
-from plainmath.expressions import equalities, exact, s, written
+from plainmath.expressions import exact, s, written
+from plainmath.latex import equalities
 from plainmath.validation import exact_nonzero, exact_not_negative
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import sympy
 
 from loopbook.diagrams.drawing import FONT_SIZE, RADIUS, Drawing, mathematics, signal_name, text_size, wording
-from loopbook.latex import latex
+from plainmath.latex import latex
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture

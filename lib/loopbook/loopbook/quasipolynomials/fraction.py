@@ -21,6 +21,7 @@ from sympy.polys.rings import PolyRing
 
 from loopbook.transfer import transfer_function
 from plainmath.expressions import s
+from plainmath.tables import typeset
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -314,7 +315,7 @@ class DelayFraction:
         return f"{type(self).__name__}({self.expr})"
 
     def _repr_latex_(self) -> str:
-        return self.expr._repr_latex_()
+        return typeset(self.expr)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, DelayFraction):

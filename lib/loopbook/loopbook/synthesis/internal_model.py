@@ -15,6 +15,7 @@ from loopbook.synthesis.settings import Match, as_pid
 from loopbook.transfer import first_order, integrator, integrator_with_lag, second_order, transfer_function
 from loopbook.types import Number, TransferFunctionLike
 from plainmath.expressions import exact, s
+from plainmath.tables import typeset
 from plainmath.validation import exact_positive
 
 #: What makes a rational transfer function of one with dead time, as `taylor` and `pade`.
@@ -40,10 +41,10 @@ class Design(NamedTuple):
 
     def _repr_html_(self):
         *steps, (_, match) = self._asdict().items()
-        steps = {**dict(steps), "controller": match.controller, "settings": match}
+        steps = {name: typeset(value) for name, value in [*steps, ("controller", match.controller)]}
         rows = (
-            f'<tr><td style="text-align:left">{name}</td><td style="text-align:left">{value._repr_latex_()}</td></tr>'
-            for name, value in steps.items()
+            f'<tr><td style="text-align:left">{name}</td><td style="text-align:left">{text}</td></tr>'
+            for name, text in {**steps, "settings": match._repr_latex_()}.items()
         )
         return f"<table>{''.join(rows)}</table>"
 

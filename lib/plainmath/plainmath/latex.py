@@ -1,4 +1,4 @@
-"""Formulas in LaTeX that both Matplotlib and MathML understand, with factors and terms in the order of the books.
+"""Formulas in LaTeX that both Matplotlib and MathML understand, with factors and terms in the order of books.
 
 Powers of s fall, as in s - a, and s is behind its coefficient, as in tau s; among the rest numbers come first, as in
 1 + G, and a minus does not. Decimal numbers are written as such.
@@ -6,19 +6,24 @@ Powers of s fall, as in s - a, and s is behind its coefficient, as in tau s; amo
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import sympy
 from sympy.core.function import AppliedUndef
-from sympy.printing.latex import LatexPrinter
+from sympy.printing.latex import LatexPrinter, greek_letters_set, other_symbols
 
-from plainmath.expressions import s
+from plainmath.expressions import s, t, written
 
 if TYPE_CHECKING:
-    from loopbook.types import Number
+    from plainmath.types import Number
 
-__all__ = ["latex"]
+__all__ = ["GREEK", "equalities", "latex"]
 
+GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi",
+          "pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega"}  # fmt: skip
+
+_LETTERS = GREEK | greek_letters_set | other_symbols
 # A product begins with its number and ends with s or t; what is not named here comes between.
 _FIRST, _LAST = ("k", "K", "C", "G", "P", "Q", "a", "c", "d", "zeta", "omega"), ("beta", "tau", "theta", "s", "F", "t")
 _FUNCTIONS = {"sin": "sin", "cos": "cos", "tan": "tan", "atan": "arctan"}
@@ -28,8 +33,13 @@ class _Printer(LatexPrinter):
     """SymPy's own, but for the order of factors and terms; fractions are on one line in exponents, and if ``flat``."""
 
     def __init__(self, flat=False):
-        super().__init__()
+        super().__init__({"full_prec": False})
         self.flat = flat
+
+    def _print_Symbol(self, expr, style="plain"):
+        name = expr.name
+        is_word = len(name) > 2 and name.isalpha() and name not in _LETTERS  # such as a unit
+        return rf"\mathrm{{{name}}}" if is_word else super()._print_Symbol(expr)
 
     def _fraction(self, above, below):
         if not self.flat:
@@ -41,7 +51,7 @@ class _Printer(LatexPrinter):
     def _print_Mul(self, expr):
         sign = ""
         if expr.could_extract_minus_sign():
-            expr, sign = -expr, "- "
+            expr, sign = _without_minus(expr)
             if not expr.is_Mul:
                 return sign + self._bracketed(expr)
         above, below = sympy.fraction(expr, exact=True)
@@ -95,12 +105,25 @@ class _Printer(LatexPrinter):
         return rf"\min({', '.join(self._print(sympy.factor(x)) for x in sorted(expr.args, key=sympy.count_ops))})"
 
     def _print_Function(self, expr, exp=None):
+        if isinstance(expr, AppliedUndef):
+            name = self._print(sympy.Symbol(expr.func.__name__)) + ("" if exp is None else f"^{{{exp}}}")
+            return f"{name}({', '.join(map(self._print, expr.args))})"
         if exp is not None or expr.func.__name__ not in _FUNCTIONS:
             return super()._print_Function(expr, exp)
         (argument,) = expr.args
         text = self._print(argument)
         text = rf"\left({text}\right)" if argument.is_Add or "frac" in text or "/" in text else text
         return rf"\{_FUNCTIONS[expr.func.__name__]} {text}"
+
+
+def _without_minus(product):
+    """A product without its minus, and the sign before it: none where a difference in it is turned around instead."""
+    for factor in sympy.Mul.make_args(product):
+        base, power = factor.as_base_exp()
+        signs = {term.could_extract_minus_sign() for term in base.args} if base.is_Add else set()
+        if power in (1, -1) and len(signs) == 2:
+            return -product / factor * sympy.Pow(sympy.Add(*(-term for term in base.args)), power), ""
+    return -product, "- "
 
 
 def _is_elementary(factor):
@@ -115,6 +138,8 @@ def _place(factor):
     if isinstance(factor, sympy.exp):
         return 4, 0, ""
     base = factor.as_base_exp()[0]
+    if base.is_Add and not base.has(s, t):
+        return 2, _LAST.index("s"), str(base)
     if not base.is_Symbol:
         return 3 if base.is_Add else 5, 0, str(base)
     letter = base.name.partition("_")[0]
@@ -170,7 +195,7 @@ def _decimal(q):
         return q
     if _is_decimal(q.q):
         return sympy.Symbol(_plain(abs(q)), positive=True) * sympy.sign(q)
-    return 1 / sympy.Symbol(_plain(1 / q), positive=True) if _is_decimal(q.p) and q.p > 1 else q
+    return 1 / sympy.Symbol(_plain(1 / q), positive=True) if q.p in (10, 100) else q
 
 
 def _is_decimal(n):
@@ -179,3 +204,17 @@ def _is_decimal(n):
 
 def _plain(q):
     return f"{float(q):.4f}".rstrip("0")
+
+
+def equalities(values: Mapping[str, sympy.Expr]) -> str:
+    r"""Return named values as LaTeX between dollar signs, for the display of settings and models.
+
+    Arguments:
+        values: ``{symbol as LaTeX: value}``.
+
+    >>> print(equalities({"K_p": sympy.Rational(1, 2), "T_i": 3 * sympy.Symbol("tau")}))
+    $\displaystyle K_p = \dfrac{1}{2}, \quad T_i = 3 \tau$
+    """
+    texts = ((x, value, written(value)) for x, value in values.items())
+    shown = (f"{x} = {latex(value) if text == str(value) else text}" for x, value, text in texts)
+    return r"$\displaystyle " + r", \quad ".join(shown) + "$"
