@@ -49,7 +49,7 @@ COMPILED = (
     "pygments", "pyparsing", "python-dateutil", "scipy", "six", "sqlite3", "stack-data", "traitlets", "wcwidth",
 )  # fmt: skip
 PURE = (
-    "comm", "flexcache", "flexparser", "ipywidgets", "lark", "latex2mathml", "loopbook", "markdown-it-py", "mdurl",
+    "comm", "control", "flexcache", "flexparser", "ipywidgets", "lark", "latex2mathml", "loopbook", "markdown-it-py", "mdurl",
     "mpmath", "pint", "platformdirs", "schemdraw", "sympy", "typing-extensions",
 )  # fmt: skip
 OWN = ("ipykernel", "pyodide-kernel")  # JupyterLite's

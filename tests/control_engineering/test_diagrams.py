@@ -118,7 +118,7 @@ def test_arrow_heads_are_alike(name):
 def test_series_runs_from_left_to_right_on_one_axis():
     texts, boxes, circles, heads, wires = measured(block_diagram("u", H1, "x", H2, "y"))
     assert [text for text, _ in sorted(texts, key=lambda item: item[1].x0)] == [
-        "$u$", r"$H_{1}{\left(s \right)}$", "$x$", r"$H_{2}{\left(s \right)}$", "$y$",
+        "$u$", r"$H_{1}(s)$", "$x$", r"$H_{2}(s)$", "$y$",
     ]  # fmt: skip
     assert circles == []
     assert len(heads) == len(wires) == 3
@@ -257,7 +257,7 @@ def test_the_table_of_elementary_blocks_names_each_with_its_formula():
         (K / (s - a), r"$\dfrac{K}{s - a}$"),
         (1 / (T * s + 1), r"$\dfrac{1}{T s + 1}$"),
         (1 / (s**2 + 2 * a * s + 1), r"$\dfrac{1}{s^{2} + 2 a s + 1}$"),
-        (1 / (1 + H1), r"$\dfrac{1}{1 + H_{1}{\left(s \right)}}$"),
+        (1 / (1 + H1), r"$\dfrac{1}{1 + H_{1}(s)}$"),
         (sympy.exp(-tau * s), r"$e^{-\tau s}$"),
         (2, "$2$"),
     ],

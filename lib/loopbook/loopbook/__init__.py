@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-import sys
 from typing import TYPE_CHECKING
 
 from sympy.printing.defaults import Printable
@@ -65,11 +64,5 @@ def __dir__() -> list[str]:
     return sorted(__all__)
 
 
-def _write_formulas_as_books_do() -> None:
-    """Let a notebook show SymPy's formulas with falling powers of s, as K e^(-tau s)/(T s + 1)."""
-    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
-    if shell is not None:
-        shell.display_formatter.formatters["text/latex"].for_type(Printable, typeset)
-
-
-_write_formulas_as_books_do()
+# Notebooks show SymPy's formulas with falling powers of s, as K e^(-tau s)/(T s + 1).
+Printable._repr_latex_ = typeset
