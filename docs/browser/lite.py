@@ -49,8 +49,8 @@ COMPILED = (
     "pygments", "pyparsing", "python-dateutil", "scipy", "six", "sqlite3", "stack-data", "traitlets", "wcwidth",
 )  # fmt: skip
 PURE = (
-    "comm", "control", "flexcache", "flexparser", "ipywidgets", "lark", "latex2mathml", "loopbook", "markdown-it-py", "mdurl",
-    "mpmath", "pint", "platformdirs", "schemdraw", "sympy", "typing-extensions",
+    "comm", "control", "flexcache", "flexparser", "ipywidgets", "lark", "latex2mathml", "loopbook", "markdown-it-py",
+    "mdurl", "mpmath", "pint", "platformdirs", "schemdraw", "sympy", "typing-extensions",
 )  # fmt: skip
 OWN = ("ipykernel", "pyodide-kernel")  # JupyterLite's
 PYTHON = ("pyodide.mjs", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip")
