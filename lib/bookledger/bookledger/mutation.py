@@ -9,7 +9,7 @@ in a process of its own, and what arrives at the checks is compared with what ar
   coefficients, not in its exponents) another value is asked of every number and formula, and other numbers in the
   evidence of every claim, of an entry that gives something. What cannot depend on that says why, as `constant`, and
   must not move. Names are not asked, because no small change reaches them, nor is what is quoted. Numbers of the book
-  that nobody computes, such as laboratory data, are givens, too. A cell that fails with other givens is passed over,
+  that nobody computes, such as laboratory data, are givens, too. A cell that fails with other givens is skipped,
   and what was not reached, or did not move, is tried in other ways, at last with one given alone.
 - *With other prints* every value must stay what it was. A claim may follow `Entry.printed_value`, and so may what is
   fitted.
