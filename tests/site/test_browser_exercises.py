@@ -44,6 +44,7 @@ class Reader:
     def __init__(self, chromium, address, **habits):
         self.address = address
         self.context = chromium.new_context(**({"viewport": DESKTOP, "service_workers": "block"} | habits))
+        self.context.add_init_script("localStorage['loopbook-show'] = 'all'")  # also what is in further sections
         self.page = self.context.new_page()
         self.page.set_default_timeout(PATIENCE)
         self.complaints = Complaints(self.page, noise=("Service Worker registration blocked",))

@@ -227,6 +227,7 @@ class TestSite:
     def test_every_slider_of_every_lesson_moves_its_picture(self, reader, book):
         """At some value of each, with the others at the start; and all goes back to the start."""
         idle, moved = [], 0
+        reader.page.add_init_script("localStorage['loopbook-show'] = 'all'")  # some are in further sections
         for page in with_lessons(book):
             reader.go(page)
             for lesson in reader.page.locator(".lesson").all():
