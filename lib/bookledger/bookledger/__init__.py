@@ -19,7 +19,7 @@ computed: Through a wall of twice the thickness less heat flows.
 corrected: the decimal point is lost
 
 `bookledger.pytest_plugin` proves a collection of notebooks: that each entry is checked where it belongs, that its
-status is true, and that no check can only succeed.
+status is one that it may have, and that what is computed follows what is given, and not what is printed.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ from bookledger.evidence.values import NUMBER, formulas_agree, in_one_line, pars
 from bookledger.kinds import Claim, Formula, Name, Number
 from bookledger.results import Result
 from bookledger.source import Entry, Given, Source
-from bookledger.statuses import Fitted, Quoted
+from bookledger.statuses import Fitted, Quoted, Reconstructed
 from bookledger.stored import Stored, code
 
 #: What becomes of an entry of a source.
@@ -387,9 +387,8 @@ def _beside(printed, value, row, way):
             return 2 * value + sympy.Symbol("unheard_of")
         case Fraction():
             prints = [other for other in (printed, *row.status.others(printed)) if other.is_finite]
-            within = getattr(getattr(row.status, "assuming", None), "within", "")
-            margin = Fraction(within.rstrip("% ") or 0) * (abs(printed.value) / 100 if "%" in within else 1)
-            return value + way * Fraction(201, 100) * max(margin, *(other.tolerance for other in prints))
+            assumed = [row.status.assuming.margin(printed)] if isinstance(row.status, Reconstructed) else []
+            return value + way * Fraction(201, 100) * max([*assumed, *(other.tolerance for other in prints)])
     return f"other than {value}"
 
 

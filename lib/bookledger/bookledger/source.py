@@ -190,7 +190,7 @@ class Entry:
         """Return numbers of the book exactly as printed, for claims about the printed table itself.
 
         What a book reads from its own table is judged by the cells of that table. A number is never checked against
-        itself: the rules for notebooks refuse a printed value that is handed back.
+        itself: `bookledger.mutation` finds a value that follows the print.
 
         Raises LedgerError for the name of what is not a number.
 

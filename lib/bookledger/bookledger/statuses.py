@@ -40,22 +40,25 @@ class Assumption:
             raise LedgerError(f"{where}: text is {text!r}, expected a sentence without its full stop")
         if not isinstance(parameters, int) or isinstance(parameters, bool) or parameters < 0:
             raise LedgerError(f"{where}: parameters is {parameters!r}, expected how many values were chosen, as 2")
-        amount, percent = cls._margin(within) if isinstance(within, str) else ("", None)
+        amount, percent = cls._parts(within) if isinstance(within, str) else ("", None)
         if not NUMBER.fullmatch(amount) or not 0 < Fraction(amount) < (100 if percent else float("inf")):
             raise LedgerError(f"{where}: within is {within!r}, expected a positive number, or a percentage below 100 %")
         return cls(in_one_line(text), parameters, data.get("within", ""))
 
     @staticmethod
-    def _margin(within):
+    def _parts(within):
         return re.fullmatch(r"(.*?)(\s*%)?", within).groups()
 
     def judge(self, printed: Printed, value: Any) -> str:
         """Say how a number that rests on it agrees with its print; empty where it does not."""
         if not self.within or not isinstance(printed, Number):
             return printed.agrees(value)
-        amount, percent = self._margin(self.within)
-        margin = Fraction(amount) / 100 * abs(printed.value) if percent else Fraction(amount)
-        return "within" if abs(value - printed.value) <= margin else ""
+        return "within" if abs(value - printed.value) <= self.margin(printed) else ""
+
+    def margin(self, printed: Number) -> Fraction:
+        """Return how far a value may lie from a print, at most; 0 where the digits alone say it."""
+        amount, percent = self._parts(self.within or "0")
+        return Fraction(amount) / 100 * abs(printed.value) if percent else Fraction(amount)
 
 
 @dataclass(frozen=True)
@@ -149,10 +152,10 @@ class Observed(Status):
 
 @dataclass(frozen=True)
 class Divided(Observed):
-    """A claim that holds by one measure and fails by another."""
+    """A claim that holds by one measure or in one case, and fails by another."""
 
     word = "divided"
-    meaning = "true by one measure and false by another, where the book names none"
+    meaning = "true by one measure or in one case and false by another, where the book names none"
     mark = ("±", "open")
 
     def _validate(self, where, printed):

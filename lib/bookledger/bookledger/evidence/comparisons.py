@@ -168,7 +168,7 @@ class Comparison(Evidence):
 
     @property
     def data(self) -> dict[str, Any]:
-        """The values, with enough digits to judge them again."""
+        """The values, with enough digits to see the verdict in them."""
         left, right = data(self.left, self.right, decides=lambda *sides: self._is_so(*sides) is self.holds)
         named = {"quantity": self.quantity, "unit": self.unit, "criterion": self.criterion and self.criterion.word}
         return {
@@ -248,7 +248,7 @@ class Ratio(Evidence):
 
     @property
     def data(self) -> dict[str, Any]:
-        """The values, with enough digits to judge them again."""
+        """The values, with enough digits to see the verdict in them."""
         verdicts = self._with_limits(self.left, self.right)
         left, right = data(self.left, self.right, decides=lambda *sides: self._with_limits(*sides) == verdicts)
         return {

@@ -267,7 +267,7 @@ def rounded(value: Fraction | float, digits: int = 3) -> str:
 
 
 def data(*values: Side, decides: Callable[..., bool] = lambda *values: True) -> list[Any]:
-    """Return values as JSON data, numbers with as many digits as it takes to judge them again, six at least.
+    """Return values as JSON data, numbers with as many digits as it takes to see the verdict in them, six at least.
 
     Arguments:
         values: numbers, formulas, texts or rows.
