@@ -75,7 +75,7 @@ class FrontExercise(SphinxDirective):
         cells = single_figures.cells_of(chapter)
         outputs = next(cell["outputs"] for cell in cells if cell["source"] == f'exercise("{number}")')
         statement = exercise_forms.sheet(number).question.statement
-        pictures = stored.pictures(outputs).replace("<img ", '<img loading="lazy" ')
+        pictures = stored.pictures(outputs, "_images/")
         form = exercise_forms.form(number, statement.points, pictures, f"solutions/{chapter}.html")
         link = f"[In its chapter](chapters/{chapter}.ipynb#exercise-{slug(number)})"
         return self.parse_text_to_nodes(f"**{statement.heading}.** {link}\n\n{form}")

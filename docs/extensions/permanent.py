@@ -17,6 +17,15 @@ KINDS = ("example", "equation", "figure", "section", "table")
 NUMBER = re.compile(r"\(?\b((?:[A-Z]\.)?\d+(?:\.\d+)*)([a-z]?)\b\)?")
 HEAD = re.compile(rf"({'|'.join(KINDS)})s? (?=[(\dA-Z])", re.IGNORECASE)
 FIGURE = "figure_places"  # of a cell's metadata: the names of its figure, and its title
+#: Places that are no more, and the section that stands for them: {chapter: {the section's name: the places}}.
+MOVED = {
+    "02_block_diagrams": {"example-2-2": ["equation-2-11"]},
+    "03_modeling": {"section-3-5": ["equation-3-21"]},
+    "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
+    "16_tuning_relations": {"table-12-3": ["figure-cell-103"]},
+    "17_dead_time_compensation": {"section-1": ["figure-cell-020"]},
+    "18_integral_criteria": {"more-than-one-dead-time": ["figure-cell-134"]},
+}
 
 
 def names_of(title):
@@ -114,6 +123,8 @@ def name_sections(app, doctree):
         names = [name for name in names_of(section[0].astext()) if name not in known]
         known |= set(names)
         section["ids"][:0] = [name for name in names if name not in section["ids"]]
+        moved = MOVED.get(app.env.docname.removeprefix("chapters/"), {})
+        section["ids"] += [place for name in section["ids"] for place in moved.get(name, ())]
 
 
 def of_cell(cell):

@@ -60,8 +60,8 @@ def of_chapter(chapter):
         output = next(o for o in cell["outputs"] if "image/png" in o.get("data", {}))
         said, name = output["metadata"]["image/png"], places[cell["id"]][0]
         of = permanent.title_of(said["alt"])
-        picture = f"{hashlib.sha256(content(output)).hexdigest()}.png"
-        found.append(Figure(chapter, number, name, of, said["alt"], picture, said["width"], said["height"]))
+        size = said["width"], said["height"]
+        found.append(Figure(chapter, number, name, of, said["alt"], file_name(output), *size))
     return found
 
 
@@ -70,12 +70,22 @@ def content(output):
     return base64.b64decode("".join(output["data"]["image/png"]))
 
 
-def place_picture(figure, folder):
-    """Put the picture of a figure where the site has its images, if its chapter has a lesson in its place."""
-    outputs = cells_of(figure.chapter)[figure.cell]["outputs"]
-    if not (folder / figure.picture).exists():
-        folder.mkdir(exist_ok=True)
-        (folder / figure.picture).write_bytes(content(next(o for o in outputs if "image/png" in o.get("data", {}))))
+def file_name(output):
+    """The file of a picture, by what it holds."""
+    return f"{hashlib.sha256(content(output)).hexdigest()}.png"
+
+
+def place_pictures(folder):
+    """Put the pictures where the site has its images that Sphinx does not put there.
+
+    They are those of exercises, and of cells in whose place a chapter has a lesson.
+    """
+    folder.mkdir(exist_ok=True)
+    for path in [*CHAPTERS.glob("*.ipynb"), *CHAPTERS.with_name("solutions").glob("*.ipynb")]:
+        for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+            for output in cell.get("outputs", ()):
+                if "image/png" in output.get("data", {}) and not (folder / file_name(output)).exists():
+                    (folder / file_name(output)).write_bytes(content(output))
 
 
 def imports(chapter):
@@ -157,11 +167,10 @@ def pages(app):
     def highlighted(code):
         return app.builder.highlighter.highlight_block(code, "python")
 
+    place_pictures(Path(app.outdir, "_images"))
     for chapter, title in chapters().items():
         if f"chapters/{chapter}" not in app.env.found_docs:
             continue
-        for figure in of_chapter(chapter):
-            place_picture(figure, Path(app.outdir, "_images"))
         context = {"title": f"Figures of chapter {title}", "body": body(chapter, title, highlighted), "parents": []}
         yield f"figures/{chapter}", context, "page.html"
 

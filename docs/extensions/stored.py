@@ -18,6 +18,7 @@ import mathml
 import nbformat
 import permanent
 import reading
+import single_figures
 import slugs
 from lessons import of_cell
 from light import is_wide
@@ -214,11 +215,18 @@ def with_class(match):
     return f'class="{COLOURS[match[1]]}{" nowrap" if match[2] else ""}"'
 
 
-def pictures(outputs):
-    """The pictures among outputs, as HTML with their sizes and their descriptions."""
-    shown = [(o["data"]["image/png"], o["metadata"]["image/png"]) for o in outputs if "image/png" in o.get("data", {})]
+def pictures(outputs, to_images="../_images/"):
+    """The pictures among outputs, as HTML with their sizes and their descriptions.
+
+    Arguments:
+        outputs: of a cell.
+        to_images: the way from the page to the site's images.
+    """
+    shown = [
+        (single_figures.file_name(o), o["metadata"]["image/png"]) for o in outputs if "image/png" in o.get("data", {})
+    ]
     return "\n\n".join(
-        f'<div class="picture"><img src="data:image/png;base64,{image.strip()}" alt="{escape(said["alt"])}" '
+        f'<div class="picture"><img src="{to_images}{image}" alt="{escape(said["alt"])}" loading="lazy" '
         f'width="{said["width"]}" height="{said["height"]}"{" class=wide" if is_wide(said["width"]) else ""}></div>'
         for image, said in shown
     )

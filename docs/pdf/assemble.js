@@ -37,6 +37,10 @@ async ({ address, parts, title, about }) => {
     article.querySelectorAll("details").forEach((part) => part.replaceWith(...part.childNodes));
     article.querySelectorAll("summary").forEach((part) => part.remove());
     article.querySelectorAll("[id]:not(svg, svg *)").forEach((part) => { part.id = `${key}--${part.id}`; });
+    // a heading may go to the next sheet, and leave its empty section behind
+    article.querySelectorAll("section[id] > :is(h1, h2, h3, h4)").forEach((heading) => {
+      [heading.id, heading.parentElement.id] = [heading.parentElement.id, ""];
+    });
     article.querySelectorAll("[tabindex]").forEach((part) => part.removeAttribute("tabindex"));
     article.querySelectorAll("a[href]").forEach((link) => lead(link, page));
     article.querySelectorAll("img").forEach((image) => {
@@ -72,7 +76,7 @@ async ({ address, parts, title, about }) => {
       line(part.title ? 1 : 0, article.id, name, "of-chapter");
       if (!part.title) {
         for (const heading of article.querySelectorAll("h2")) {
-          line(1, heading.parentElement.id, heading.textContent, "of-section");
+          line(1, heading.id, heading.textContent, "of-section");
         }
       }
       book.push(article);

@@ -50,6 +50,8 @@ def convert(latex: str, display: bool = False) -> str:
     source = latex.strip()
     large = source.startswith(r"\displaystyle")
     source = source.removeprefix(r"\displaystyle").strip()
+    if large and source.count(r"\dfrac") == 1:  # it is large already
+        source = source.replace(r"\dfrac", r"\frac")
     try:
         tree = ET.fromstring(translate(_prepared(source), display="block" if display or large else "inline"))
     except Exception as problem:
