@@ -50,7 +50,7 @@ def of_page(name, site=""):
             "isBasedOn": [work(one) for one in sources().values()],
         }
         said |= {"codeRepository": repository.ADDRESS} if repository.ADDRESS else {}
-    elif folder in stored.FOLDERS and f"{name}.ipynb" != launch.FIRST:
+    elif folder in stored.FOLDERS and chapter and f"{name}.ipynb" != launch.FIRST:
         cells = single_figures.cells_of(chapter)
         text = "\n".join(cell["source"] for cell in cells)
         names = re.findall(r"(?m)^from loopbook\.ledger import (.+)$", text)

@@ -36,8 +36,9 @@ def test_it_is_json_which_no_page_mistakes_for_its_own():
         described.add(app, page, "", context, None)
         assert "<" not in context["described"]
         assert page == "chapters/00_start" or json.loads(context["described"])["@type"]
-    described.add(app, "schools", "", context, None)
-    assert context["described"] == ""
+    for page in ("schools", "solutions"):
+        described.add(app, page, "", context, None)
+        assert context["described"] == ""
 
 
 def test_examples():
