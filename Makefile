@@ -14,7 +14,7 @@ unexport MPLBACKEND
 # Each of the fifty kernels of the tests would compile the library again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help lab fresh edit test test-site test-grading test-solutions test-all test-alone bench book pdf pictures grade execute
+.PHONY: help lab fresh edit test test-site test-grading test-solutions test-all test-alone bench book pdf pictures grade execute address version
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -43,7 +43,7 @@ test-solutions: .venv/ready ## prove every cell of the solutions
 test-all: .venv/ready ## prove everything with all variants and all draws, as once a week
 	LOOPBOOK_ALL=1 $(python) -m pytest -n $(more) -o bookledger_mutation=true tests lib chapters solutions README.md
 
-test-alone: ## prove each package alone, with those it stands on, as once a week
+test-alone: ## make each package, install it in an empty environment and prove it there, as once a week
 	$(PYTHON) tests/repository/alone.py
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
@@ -68,6 +68,12 @@ execute: .venv/ready ## run every notebook again, store its outputs, record the 
 	$(python) -m loopbook execute
 	$(python) docs/lessons
 	$(python) -m loopbook ledger
+
+address: ## write the address of the repository wherever it stands: make address ADDRESS=https://github.com/OWNER/NAME
+	$(PYTHON) tests/repository/release.py address $(ADDRESS)
+
+version: ## write a version, with today as its day, wherever it stands: make version VERSION=0.2.0
+	$(PYTHON) tests/repository/release.py version $(VERSION)
 
 # The stamp holds the folder it was made in, because an editable install does not survive a move, and the Python it was
 # made with, because whoever names another one wants that.

@@ -3,28 +3,22 @@
 Colab gives each notebook a machine of its own, on which loopbook is not installed, and the chapters themselves hold no
 set-up code. The workflow colab.yml puts the copies on the branch `colab`, where the buttons of the book lead.
 
-    python .colab/copies.py build/colab
+    python .colab/copies.py build/colab https://github.com/OWNER/NAME
 """
 
 import json
 import sys
-import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("chapters", "solutions")
 
 
-def repository():
-    """The address of the repository, from pyproject.toml."""
-    return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["urls"]["Repository"]
-
-
-def installing():
-    """The first cell of a copy."""
+def installing(address):
+    """The first cell of a copy, which takes loopbook from the repository with that address."""
     lines = [
         "# Colab has no loopbook yet: this installs it, in a minute, and may restart the session. Then go on below.\n",
-        f"![ -d loopbook ] || git clone --quiet --depth 1 {repository()}.git loopbook\n",
+        f"![ -d loopbook ] || git clone --quiet --depth 1 {address}.git loopbook\n",
         "%run loopbook/.colab/prepare.py",
     ]
     return {
@@ -37,19 +31,19 @@ def installing():
     }
 
 
-def copy(text):
+def copy(text, address):
     """Return the text of a notebook with the installing cell first, and all else as it was."""
     notebook = json.loads(text)
-    notebook["cells"].insert(0, installing())
+    notebook["cells"].insert(0, installing(address))
     return json.dumps(notebook, ensure_ascii=False, indent=1) + "\n"
 
 
-def main(target):
+def main(target, address):
     """Write all copies into a folder, each at the path of its original."""
     for folder in FOLDERS:
         (Path(target) / folder).mkdir(parents=True, exist_ok=True)
         for original in sorted((ROOT / folder).glob("*.ipynb")):
-            text = copy(original.read_text(encoding="utf-8"))
+            text = copy(original.read_text(encoding="utf-8"), address)
             (Path(target) / folder / original.name).write_text(text, encoding="utf-8")
 
 

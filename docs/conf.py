@@ -18,7 +18,7 @@ language = "en"
 extensions = [
     "myst_nb", "stored", "exercise_forms", "mathml", "library", "repository_pages",
     "command_options", "calls", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive",
-    "permanent", "single_figures", "search_index", "python_in_pages", "reading", "light",
+    "permanent", "single_figures", "described", "search_index", "python_in_pages", "reading", "light",
 ]  # fmt: skip
 exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
 
@@ -53,7 +53,7 @@ html_favicon = "_static/favicon.svg"
 html_baseurl = os.environ.get(
     "LOOPBOOK_SITE", ""
 )  # where the site is going to be, as https://control.example.edu/book/
-html_context = {"site": html_baseurl}  # for previews of links
+html_context = {"site": html_baseurl, "licences": repository.LICENCES}  # for previews of links, and the foot
 html_copy_source = False
 html_show_sourcelink = False
 pygments_style = "a11y-high-contrast-light"

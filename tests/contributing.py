@@ -5,11 +5,11 @@ import textwrap
 from pathlib import Path
 from unittest import mock
 
-GUIDE = Path(__file__).parents[1] / "CONTRIBUTING.md"
+GUIDE = Path(__file__).parents[1] / "docs" / "contributors.md"
 
 
 def example(heading, language="python"):
-    """The first block of code under a heading of CONTRIBUTING.md."""
+    """The first block of code under a heading of the contributor's guide."""
     text = re.sub(r"^````.*?^````$", "", GUIDE.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
     section = text.partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
     return textwrap.dedent(re.search(rf"```{language}\n(.*?)```", section, re.DOTALL)[1])
@@ -32,7 +32,7 @@ def exercise():
     from exercisebook.pages import page
 
     text = re.search(r"^````markdown\n(.*?)^````$", GUIDE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)[1]
-    return page.of(text, "CONTRIBUTING.md", run("Add an exercise"))[1]["10.11"]
+    return page.of(text, "contributors.md", run("Add an exercise"))[1]["10.11"]
 
 
 def kind():

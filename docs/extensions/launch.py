@@ -1,7 +1,7 @@
 """Where a notebook can be opened and run without an installation: in the page, on Binder, Colab and Codespaces.
 
-The repository's address stands in pyproject.toml and nowhere else; a branch other than main follows it, as in
-https://github.com/loopbook/loopbook/tree/next.
+The repository's address is that of pyproject.toml, where `make address` writes it; until it is known nothing but the
+page is offered. A branch other than main follows it, as in https://github.com/OWNER/NAME/tree/next.
 """
 
 import re
@@ -17,13 +17,13 @@ FIRST = "chapters/00_start.ipynb"  # what is opened of the whole collection
 IN_PAGE = "lite/notebooks/index.html?path="  # JupyterLite's place on the site, which browser/lite.py makes
 
 
-def of_repository(address=repository.ADDRESS):
-    """Return owner and name of a repository, as "loopbook/loopbook", and its branch.
+def of_repository(address):
+    """Return owner and name of a repository, as "OWNER/NAME", and its branch.
 
     Raises ValueError for an address that is not on GitHub.
 
-    >>> of_repository("https://github.com/loopbook/loopbook/tree/next")
-    ('loopbook/loopbook', 'next')
+    >>> of_repository("https://github.com/OWNER/NAME/tree/next")
+    ('OWNER/NAME', 'next')
     """
     if not (found := ADDRESS.fullmatch(address)):
         raise ValueError(f"the repository is {address}: expected one on github.com")
@@ -45,21 +45,24 @@ def in_page(path="", root=""):
     return f"{root}{IN_PAGE}{quote(_existing(path) or FIRST)}"
 
 
-def links(path=""):
-    """Return name and address of each place that opens a notebook, or without one the collection.
+def links(path="", address=repository.ADDRESS):
+    """Return name and address of each place that opens a notebook, or without one the collection; none without address.
 
     A codespace is the whole repository: no address opens one notebook in it.
 
     Arguments:
         path: of a notebook from the root of the repository, as "chapters/01_introduction.ipynb".
+        address: of the repository, empty where it is not known.
     Raises:
-        ValueError: for a path at which there is nothing, or if there is no repository.
+        ValueError: for a path at which there is nothing, or an address that is not on GitHub.
 
-    >>> [name for name, address in links("chapters/01_introduction.ipynb")]
+    >>> [name for name, _ in links("chapters/01_introduction.ipynb", "https://github.com/OWNER/NAME")]
     ['Binder', 'Colab', 'Codespaces']
     """
     _existing(path)
-    name, branch = of_repository()
+    if not address:
+        return ()
+    name, branch = of_repository(address)
     on_binder = quote(f"lab/tree/{path or FIRST}", safe="")
     return (
         ("Binder", f"https://mybinder.org/v2/gh/{name}/{quote(branch, safe='')}?urlpath={on_binder}"),

@@ -1,8 +1,9 @@
 """Pages of the repository within the site: a block `repository-page` in a page is replaced by a file, or a part of it.
 
-Its links lead to the site's own pages where there are such, and else to the repository. Options: `from` and `until`
-cut at the first occurrence of a text, `deeper` moves headings down by so many levels. The text is put in before the
-page is read, because headings are to be those of the page.
+Its links lead to the site's own pages where there are such, and else to the repository, once that has an address; until
+then the text of such a link is left. `THE-ADDRESS` in a page of the site is that of the repository. Options: `from` and
+`until` cut at the first occurrence of a text, `deeper` moves headings down by so many levels. The text is put in before
+the page is read, because headings are to be those of the page.
 """
 
 import posixpath
@@ -23,19 +24,19 @@ PAGES = {
 }
 BLOCK = re.compile(r"^```\{repository-page\} (.*)\n((?::.*\n)*)```$", re.MULTILINE)
 OPTION = re.compile(r"^:(from|until|deeper): (.*)$", re.MULTILINE)
-_LINK = re.compile(r"\]\((?![a-z]+:|#)([^)\s#]+)(#[^)\s]*)?\)")
+_LINK = re.compile(r"\[([^\[\]]*)\]\((?![a-z]+:|#)([^)\s#]+)(#[^)\s]*)?\)")
 _FENCE = re.compile(r"^( *)(```+).*?^\1\2$", re.MULTILINE | re.DOTALL)
 
 
-def target(file, link, anchor=""):
-    """Return where a link of a file of the repository leads to in the site.
+def target(file, link, anchor="", address=ADDRESS):
+    """Return where a link of a file of the repository leads to in the site; nothing where that is not known.
 
     >>> target("CONTRIBUTING.md", "ERRATA.md")
     '/errata.md'
     >>> target("ERRATA.md", "chapters/10_tuning.ipynb")
     '/chapters/10_tuning.ipynb'
-    >>> target("examples/course/README.md", "roster.csv").removeprefix(ADDRESS)
-    '/blob/main/examples/course/roster.csv'
+    >>> target("examples/course/README.md", "roster.csv", address="https://github.com/OWNER/NAME")
+    'https://github.com/OWNER/NAME/blob/main/examples/course/roster.csv'
     """
     path = posixpath.normpath(posixpath.join(posixpath.dirname(file), link))
     if path.endswith(".ipynb"):
@@ -44,7 +45,7 @@ def target(file, link, anchor=""):
         return f"/{path.removeprefix('docs/')}"
     if path in PAGES:
         return f"/{PAGES[path]}{anchor}"
-    return f"{ADDRESS}/{'tree' if (ROOT / path).is_dir() else 'blob'}/main/{path}{anchor}"
+    return address and f"{address}/{'tree' if (ROOT / path).is_dir() else 'blob'}/main/{path}{anchor}"
 
 
 def text_of(file, begin="", end="", deeper=0):
@@ -67,7 +68,12 @@ def text_of(file, begin="", end="", deeper=0):
 
 
 def _mended(file, text, deeper):
-    text = _LINK.sub(lambda match: f"]({target(file, match[1], match[2] or '')})", text)
+
+    def link(found):
+        leads = target(file, found[2], found[3] or "")
+        return f"[{found[1]}]({leads})" if leads else found[1]
+
+    text = _LINK.sub(link, text)
     return re.sub(r"^(?=#+ )", "#" * deeper, text, flags=re.MULTILINE)
 
 
@@ -79,6 +85,7 @@ def put_in(app, docname, source):
         app.env.note_dependency(str(ROOT / file), docname=docname)
         return text_of(file, options.get("from", ""), options.get("until", ""), int(options.get("deeper", 0))).strip()
 
+    source[0] = source[0].replace("THE-ADDRESS", ADDRESS or "THE-ADDRESS")
     # what the ledger writes calls a chapter by its file
     source[0] = re.sub(r"(?<=\(\[)0?(\w+?)_\w+(?=\]\(/chapters/)", r"chapter \1", BLOCK.sub(text, source[0]))
 

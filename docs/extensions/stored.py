@@ -82,9 +82,10 @@ def opening(folder, name):
     other = {"chapters": "solutions", "solutions": "chapters"}[folder]
     word = {"chapters": "Solutions", "solutions": "Chapter"}[folder]
     places = " · ".join(f"[{place}]({address})" for place, address in launch.links(f"{folder}/{name}.ipynb"))
-    return f"{{.opening}}\n{run} · [{word} of this chapter](/{other}/{name}.ipynb) · Open in: {places}".replace(
-        "Chapter of this chapter", "The chapter"
+    line = f"{{.opening}}\n{run} · [{word} of this chapter](/{other}/{name}.ipynb)" + (
+        places and f" · Open in: {places}"
     )
+    return line.replace("Chapter of this chapter", "The chapter")
 
 
 def in_markdown(cell):

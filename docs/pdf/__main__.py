@@ -25,7 +25,7 @@ FILE = "loopbook.pdf"
 TITLE = "loopbook"
 ABOUT = [
     "Process control from the books, as notebooks that compute everything the books print.",
-    f"{repository.COPYRIGHT}. Version {repository.VERSION}. {repository.ADDRESS}",
+    f"{repository.COPYRIGHT}. Version {repository.VERSION}. {repository.LICENCES} {repository.ADDRESS}".strip(),
 ]
 
 

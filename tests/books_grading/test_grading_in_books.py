@@ -118,7 +118,6 @@ def test_a_released_notebook_runs_in_a_kernel_of_its_own_and_says_what_it_needs(
     nbformat.validate(made)
     assert not notebooks.unfit(made)
     introduction = made.cells[0].source
-    assert "    %pip install git+https://github.com/loopbook/loopbook\n" in introduction
     assert f"released with loopbook {metadata.version('loopbook-books')}." in introduction
     assert code(made)[0].startswith("from loopbook.grading.answer_sheet import AnswerSheet, settings, transfer_")
     assert "7.125" not in as_text(made)

@@ -15,6 +15,7 @@ from packaging.requirements import Requirement
 from packaging.specifiers import SpecifierSet
 
 ROOT = Path(__file__).parents[2]
+ADDRESS = "https://github.com/OWNER/NAME"
 sys.path[:0] = [str(ROOT / "docs" / "extensions"), str(ROOT / ".colab")]
 
 import copies  # noqa: E402 - of .colab/, which has just become a place to import from
@@ -125,16 +126,16 @@ def test_colab_has_what_the_chapters_import():
 
 @pytest.mark.parametrize("path", NOTEBOOKS[:2])
 def test_a_copy_is_the_notebook_behind_a_cell_that_installs(path):
-    original, (first, *rest) = json.loads(text(path)), json.loads(copies.copy(text(path)))["cells"]
+    original, (first, *rest) = json.loads(text(path)), json.loads(copies.copy(text(path), ADDRESS))["cells"]
     assert rest == original["cells"]
     source = "".join(first["source"])
-    assert f"{PROJECT['urls']['Repository']}.git loopbook\n" in source
+    assert f"{ADDRESS}.git loopbook\n" in source
     assert (ROOT / source.rpartition("%run loopbook/")[2]).exists()
 
 
 def test_copies_lie_where_the_links_lead(tmp_path, monkeypatch):
-    monkeypatch.setattr(copies, "copy", lambda notebook: "")
-    copies.main(tmp_path)
+    monkeypatch.setattr(copies, "copy", lambda notebook, address: "")
+    copies.main(tmp_path, ADDRESS)
     assert all((tmp_path / path).exists() for path in NOTEBOOKS)
     workflow = text(".github/workflows/colab.yml")
     assert f"--initial-branch {launch.COPIES}" in workflow
@@ -146,15 +147,18 @@ def test_copies_lie_where_the_links_lead(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("path", ["", *NOTEBOOKS])
 def test_links_are_whole(path):
-    places = dict(launch.links(path))
+    places = dict(launch.links(path, ADDRESS))
     assert list(places) == ["Binder", "Colab", "Codespaces"]
-    owner_and_name = urlsplit(PROJECT["urls"]["Repository"]).path.strip("/")
     for address in places.values():
         assert urlsplit(address).scheme == "https"
-        assert f"/{owner_and_name}" in address
+        assert "/OWNER/NAME" in address
         assert " " not in address
     assert unquote(places["Binder"]).endswith(f"/main?urlpath=lab/tree/{path or NOTEBOOKS[0]}")
     assert places["Colab"].endswith(f"/blob/colab/{path or NOTEBOOKS[0]}")
+
+
+def test_where_no_address_is_known_no_link_leads_nowhere():
+    assert launch.links(address="") == ()
 
 
 def test_another_branch_stands_behind_the_address():

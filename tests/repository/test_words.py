@@ -1,4 +1,4 @@
-"""English as an engineer writes it: no text that a reader sees has the worst words of the list in CONTRIBUTING.md."""
+"""English as an engineer writes it: no text has the worst words of the list in docs/contributors.md."""
 
 import io
 import re

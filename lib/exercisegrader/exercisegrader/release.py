@@ -274,18 +274,24 @@ def _needs(version):
     """What a student needs to run the notebook, folded."""
     name = installed().module.partition(".")[0]
     address = installed().repository
+    if address:
+        how = (
+            "which is installed once, by running this in a cell and then restarting the kernel:\n\n"
+            f"    %pip install git+{address}\n\nOn a computer of your own without Jupyter, "
+            f"[{address.removeprefix('https://')}]({address}) says how to begin. "
+        )
+    else:
+        how = "which is installed as whoever gave it to you says. "
     return (
         f"<details><summary>If the first cell fails with <code>No module named '{name}'</code></summary>\n\n"
-        f"This notebook needs Python 3.11 or newer and {name}, which is installed once, by running this in a cell "
-        f"and then restarting the kernel:\n\n    %pip install git+{address}\n\n"
-        f"On a computer of your own without Jupyter, [{address.removeprefix('https://')}]({address}) says how to "
-        f"begin. The notebook was released with {name} {version}.\n\n</details>"
+        f"This notebook needs Python 3.11 or newer and {name}, {how}The notebook was released with {name} {version}."
+        "\n\n</details>"
     )
 
 
 @dataclass(frozen=True)
 class Installed:
-    """What students install: the module with the answer sheet, its version, and where it is from."""
+    """What students install: the module with the answer sheet, its version, and where it is from (empty if unknown)."""
 
     module: str
     version: str
@@ -296,9 +302,9 @@ def installed() -> Installed:
     """Return what a released notebook needs: the package that names its answer sheet in `GROUP`, or this one."""
     [plugin] = [*importlib.metadata.entry_points(group=GROUP)][:1] or [None]
     about = importlib.metadata.metadata(plugin.dist.name if plugin else "exercisegrader")
-    links = dict(one.split(", ") for one in about.get_all("Project-URL"))
+    links = dict(one.split(", ") for one in about.get_all("Project-URL", []))
     module = plugin.value if plugin else "exercisegrader.inside.answer_sheet"
-    return Installed(module, importlib.metadata.version(about["Name"]), links["Repository"])
+    return Installed(module, importlib.metadata.version(about["Name"]), links.get("Repository", ""))
 
 
 def _reading(question):

@@ -1,6 +1,7 @@
 """Released notebooks: a notebook for each student, in which nothing tells of the key."""
 
 import ast
+import dataclasses
 import re
 
 import nbformat
@@ -8,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import exercisegrader.release
 from assignments import HEAD, ONE, students, written
 from exercisegrader import GradingError
 from exercisegrader.assignment import Assignment
@@ -16,6 +18,15 @@ from exercisegrader.release import as_markdown, as_text, asked, installed, noteb
 
 def code(made):
     return [cell.source for cell in made.cells if cell.cell_type == "code"]
+
+
+@pytest.mark.parametrize("address", ["https://github.com/OWNER/NAME", ""])
+def test_a_released_notebook_leads_to_the_repository_where_it_has_an_address(tuning, monkeypatch, address):
+    known = dataclasses.replace(installed(), repository=address)
+    monkeypatch.setattr(exercisegrader.release, "installed", lambda: known)
+    introduction = notebook(tuning, *students("Ada")).cells[0].source
+    assert ("    %pip install git+https://github.com/OWNER/NAME\n" in introduction) == bool(address)
+    assert ("git+" in introduction) == bool(address)
 
 
 def test_a_released_notebook(tuning):
@@ -28,7 +39,6 @@ def test_a_released_notebook(tuning):
         assert text.startswith(f"{statement}\n\n<details><summary>How your answers are read</summary>\n\n- `")
     assert "- `Kp`: a number, in %/K (to 1\N{NO-BREAK SPACE}%)\n" in texts[1]
     assert "- `H`: an expression (in any form, each number in it" in texts[1]
-    assert f"    %pip install git+{installed().repository}\n" in texts[0]
     assert f"released with {installed().module.partition('.')[0]} {installed().version}." in texts[0]
     assert code(made)[-3:] == [
         'sheet.answer("1", Kp=..., H=..., y=..., A=..., p=...)', 'sheet.answer("2", C=..., w=..., W=...)', "sheet"
