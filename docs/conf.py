@@ -20,7 +20,7 @@ extensions = [
     "command_options", "calls", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive",
     "permanent", "single_figures", "described", "search_index", "python_in_pages", "reading", "light",
 ]  # fmt: skip
-exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
+exclude_patterns = ["lessons", "paper", "**/.ipynb_checkpoints"]
 
 # notebooks: as stored, never run
 nb_execution_mode = "off"

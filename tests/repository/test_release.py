@@ -117,7 +117,15 @@ def test_each_package_holds_its_licences_as_they_are():
     assert content.startswith(b"Attribution 4.0 International\n\n=====")
 
 
-# What publishes, and the forms.
+# The paper, what publishes, and the forms.
+
+
+def test_the_paper_is_short_and_cites_what_its_list_has():
+    paper, listed = ((ROOT / "docs" / "paper" / f"paper.{end}").read_text(encoding="utf-8") for end in ("md", "bib"))
+    _, head, text = paper.split("---\n", 2)
+    assert {"title", "tags", "authors", "affiliations", "date", "bibliography"} == {*yaml.safe_load(head)}
+    assert len(text.split()) <= 1000
+    assert {*re.findall(r"@(\w+)", text)} == {*re.findall(r"(?m)^@\w+\{(\w+)", listed)}
 
 
 def test_a_tag_is_checked_and_its_wheels_are_proved_before_they_are_published():
