@@ -190,12 +190,7 @@ def sections_begin_a_cell(stored: Stored) -> list[str]:
 
 
 def answers_are_labelled(stored: Stored) -> list[str]:
-    """In a chapter, no cell ends in a literal: a number has its name and unit, and several of them are a table.
-
-    Solutions end in answers as a student gives them.
-    """
-    if not is_chapter(stored):
-        return []
+    """No cell ends in a literal: a number has its name and unit, and several of them are a table."""
     return [
         f"{label}: answers {''.join(output.data['text/plain'])[:40]!r}, which nothing names: show quantities or a table"
         for label, cell in code(stored.notebook)
