@@ -20,7 +20,7 @@ from bookledger.report import LEFT, Report
 from bookledger.results import Language, Result, Verdict
 from bookledger.statuses import Assumption
 from bookledger.units import unit_of
-from plainmath.tables import aligned, marked, symbol, typeset
+from plainmath.tables import aligned, is_symbol, marked, symbol, typeset
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
@@ -269,10 +269,22 @@ class Entry:
     def _repr_html_(self):
         lines = [f"<p><strong>{marked(self.heading)}</strong></p>"]
         if self.inputs:
-            cells = [(marked(symbol(name)), marked(given.typeset)) for name, given in self.inputs.items()]
+            cells = [(marked(_written(name)), marked(given.typeset)) for name, given in self.inputs.items()]
             rows = [f"<tr><td {LEFT}>{name}</td><td {LEFT}>{given}</td></tr>" for name, given in cells]
             lines += ["<table>", *rows, "</table>"]
         return "\n".join(lines)
+
+
+def _written(name):
+    """The name of a given as a formula where it is a letter with words as its indices.
+
+    >>> _written("T_hin_new"), _written("w_after"), _written("K_p_at_w_max"), _written("height")
+    ('$T_{hin,new}$', '$w_{after}$', 'K p at w max', 'height')
+    """
+    letter, *indices = name.split("_")
+    if not indices or not is_symbol(letter) or not {"at", "of"}.isdisjoint(indices):
+        return symbol(name)
+    return f"${sympy.latex(sympy.Symbol(letter))}_{{{','.join(indices)}}}$"
 
 
 @dataclass(frozen=True)
