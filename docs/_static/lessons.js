@@ -98,6 +98,17 @@
 
   const [FEW, MANY] = [3, 30]; // turns of a curve that oscillates; what has more is noise
 
+  // The points of a curve from one time to another, with those at its ends.
+  function during(points, from, until) {
+    const at = (time) => {
+      const n = points.findIndex(([x]) => x >= time);
+      if (n < 1) return n ? [] : [points[0]];
+      const [before, after] = [points[n - 1], points[n]];
+      return [[time, before[1] + ((time - before[0]) / (after[0] - before[0])) * (after[1] - before[1])]];
+    };
+    return [...at(from), ...points.filter(([x]) => x > from && x < until), ...at(until)];
+  }
+
   // The values at which a curve turns.
   const turnsOf = (values) => values.filter((y, n) => (y - values[n - 1]) * (values[n + 1] - y) < 0);
 
@@ -108,14 +119,12 @@
     if (low < value.at(0) || high > value.at(1)) return "leaves the picture"; // and how far, nobody knows here
     const [from, until] = [points[0][0], points.at(-1)[0]];
     // where it rests: at its end, or in the middle of its last waves, if it hardly moves any more, or else at the setpoint
-    const edge = until - (until - from) / 5;
-    const n = points.findIndex(([x]) => x > edge);
-    const share = (edge - points[n - 1][0]) / (points[n][0] - points[n - 1][0]);
-    const late = [values[n - 1] + share * (values[n] - values[n - 1]), ...values.slice(n)];
+    const late = during(points, until - (until - from) / 5, until).map(([, y]) => y);
     const [bottom, top] = [Math.min(...late), Math.max(...late)];
     const isWave = turnsOf(late).length > 0;
     const isAtRest = top - bottom < (isWave ? 2 * SETTLED : SETTLED / 2) * (high - low);
-    const rest = isAtRest ? (isWave ? (bottom + top) / 2 : last) : (goal ?? last);
+    const isAround = bottom < goal && goal < top;
+    const rest = isAtRest && !isAround ? (isWave ? (bottom + top) / 2 : last) : (goal ?? last);
     const [way, rises] = [Math.abs(rest - first), rest > first];
     const isLoad = goal !== undefined && Math.abs(first - goal) < 2 * SETTLED * (high - low);
     const isStep = way > 0.5 * (high - low) && !isLoad;
@@ -134,7 +143,9 @@
       if (Math.abs(wrong - first) > band && values.indexOf(wrong) < begun) {
         says.push(`${rises ? "falls" : "rises"} to ${value.says(wrong)}${unit} first`);
       }
-      says.push(`${rises ? "rises" : "falls"} to ${value.says(last)}${unit}`);
+      const peak = rises ? high : low;
+      const end = isSettled || Math.abs(peak - last) < band ? `to ${value.says(last)}` : `as far as ${value.says(peak)}`;
+      says.push(`${rises ? "rises" : "falls"} ${end}${unit}`);
     } else says.push(`${isHigh ? "rises" : "falls"} as far as ${value.says(isHigh ? high : low)}${unit}`);
     const beyond = Math.round((100 * (rises ? high - rest : rest - low)) / way);
     if (isStep && beyond > 0 && (isAtRest || goal !== undefined)) says.push(`overshoots by ${beyond} %`);
@@ -287,7 +298,7 @@
         if (panel && (low < value.at(0) || high > value.at(1))) return `${name} leaves the picture.`;
         if (panel) return `${name} is between ${value.says(low)} and ${value.says(high)}${units[1]}.`;
         const says = times.map(([from, word], k) => {
-          const part = points.filter(([x]) => x >= from && x <= (times[k + 1]?.[0] ?? Infinity));
+          const part = during(points, from, times[k + 1]?.[0] ?? points.at(-1)[0]);
           const isStill = part.length < 3 || span(part, 1) < 0.005 * height;
           return isStill ? "" : `${word ? `after ${word} it ` : ""}${told(part, setpoint.at(-1)?.[1], time, value, units)}`;
         });
