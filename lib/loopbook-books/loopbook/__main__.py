@@ -154,21 +154,30 @@ def export(
         ),
     ] = None,
     moodle: Annotated[Path | None, typer.Option(help="File for Moodle's question bank, as heater.xml.")] = None,
-    variants: Annotated[int, typer.Option(min=1, help="Variants of each exercise.")] = 5,
+    stack: Annotated[
+        bool,
+        typer.Option("--stack", help="With --moodle: formulas, lists and poles, as questions of its plug-in STACK."),
+    ] = False,
+    scorm: Annotated[
+        Path | None, typer.Option(help="File for a page of the bank's exercises, as practice.zip.")
+    ] = None,
+    variants: Annotated[int, typer.Option(min=1, help="Variants of each exercise for --moodle.")] = 5,
 ) -> None:
-    """Write exercises for another system: questions with their variants, pictures, and sentences on mistakes."""
+    """Write exercises for a learning management system: questions for its bank."""
     from exercisebook.errors import ExerciseError
-    from exercisebook.export.moodle import exported
+    from exercisebook.export import moodle as questions
+    from exercisebook.export.stack import stack as formulas
     from exercisegrader import GradingError
     from exercisegrader.files import write
     from loopbook.exporting import chosen
 
-    if moodle is None:
-        fail("nothing says for which system: expected --moodle FILE")
+    if not moodle:
+        fail("nothing says for what: expected --moodle FILE")
     try:
         given = chosen(what or [])
         with progress("exporting") as show:
-            found = exported(given.variants(variants, show), given.title, given.credit)
+            forms = [questions.cloze, formulas] if stack else [questions.cloze]
+            found = questions.exported(given.variants(variants, show), given.title, given.credit, forms)
         ends = [f"-{count}" for count in range(1, len(found.files) + 1)] if len(found.files) > 1 else [""]
         names = [moodle.with_stem(moodle.stem + end) for end in ends]
         for name, content in zip(names, found.files, strict=False):

@@ -26,12 +26,14 @@ class Chosen:
         numbers: of the exercises, in their order.
         question: returns the variant of an exercise for a text.
         credit: what is worth something though it is not right.
+        is_assignment: whether the keys are nobody's but the instructor's.
     """
 
     title: str
     numbers: Sequence[str]
     question: Callable[[str, str], Question]
     credit: Credit = NOTHING
+    is_assignment: bool = False
 
     def variants(self, count: int, follow: Callable[[int, int], None] = lambda *_: None) -> Iterator[list[Question]]:
         """Yield so many variants of each exercise; `follow` is told how many were before it, and of how many."""
@@ -56,11 +58,12 @@ def chosen(names: Sequence[str]) -> Chosen:
         if len(names) > 1:
             raise ExerciseError(f"there are {len(names)} names: expected a single assignment, or exercises of the bank")
         given = assignment.load(names[0])
-        return Chosen(given.title, [*given.exercises], given.question, given.credit)
+        return Chosen(given.title, [*given.exercises], given.question, given.credit, True)
     known = {chapter: [*BANK.exercises(chapter)] for chapter in BANK.chapters()}
     known |= {number: [number] for numbers in [*known.values()] for number in numbers}
     for name in names:
         if name not in known:
             raise ExerciseError(f"there is no chapter or exercise {name!r}: {did_you_mean(name, known)}")
     numbers = [number for name in names or BANK.chapters() for number in known[name]]
-    return Chosen("loopbook", list(dict.fromkeys(numbers)), lambda text, number: BANK.exercise(number, text))
+    title = BANK.title(names[0]) if len(names) == 1 and "." not in names[0] else "Exercises in process control"
+    return Chosen(title, list(dict.fromkeys(numbers)), lambda text, number: BANK.exercise(number, text))

@@ -31,7 +31,7 @@ DIGITS, ALL_DIGITS, EXACTLY = 6, 15, 1e-3
 NOTE = "Write numbers with a decimal point and without their units."
 #: What is in a page itself, and belongs into a file of its own.
 _FILE = re.compile(r'"data:(?:image/(png);base64|text/(csv);charset=utf-8),([^"]+)"')
-_IN_A_TEXT = str.maketrans({sign: f"&#{ord(sign)};" for sign in "{}[]"})
+IN_A_TEXT = str.maketrans({sign: f"&#{ord(sign)};" for sign in "{}[]"})
 _IN_A_CELL = str.maketrans({"&": "&amp;"} | {sign: f"&#{ord(sign)};" for sign in "}~#=%"})
 
 #: How a type of questions holds a variant: its name, the cells with their places as HTML, and what else it says.
@@ -118,16 +118,16 @@ def _element(question, count, credit, forms):
     element = ElementTree.Element("question", type=kind)
     add(add(element, "name"), "text", f"{exercise.number} {exercise.title} · {count}")
     asked = "".join(
-        f"<p><code>{escaped(cell.name)}</code>: {inline(_asked(cell.kind)).translate(_IN_A_TEXT)} {place}</p>"
+        f"<p><code>{escaped(cell.name)}</code>: {inline(_asked(cell.kind)).translate(IN_A_TEXT)} {place}</p>"
         for cell, place in places
     )
     sheet = Sheet(question)
     above = "\n".join(filter(None, [sheet.text, sheet.pictures, sheet.download()]))
     has_numbers = any(not hasattr(cell.kind, "among") for cell, _ in places)
     below = sheet.accuracy + (f"<p>{NOTE}</p>" if has_numbers else "")
-    _add_text(element, "questiontext", above.translate(_IN_A_TEXT) + asked + below.translate(_IN_A_TEXT))
-    solution = html(question.solved().body).translate(_IN_A_TEXT) if exercise.worked else ""
-    _add_text(element, "generalfeedback", solution)
+    add_text(element, "questiontext", above.translate(IN_A_TEXT) + asked + below.translate(IN_A_TEXT))
+    solution = html(question.solved().body).translate(IN_A_TEXT) if exercise.worked else ""
+    add_text(element, "generalfeedback", solution)
     add(element, "defaultgrade", sum(cell.weight for cell, _ in places))
     element.extend(more)
     return element
@@ -145,8 +145,8 @@ def add(parent: ElementTree.Element, tag: str, text: object = "") -> ElementTree
     return one
 
 
-def _add_text(parent, tag, text):
-    """Append a text in HTML, with the files that are in it beside it."""
+def add_text(parent: ElementTree.Element, tag: str, text: str) -> None:
+    """Append a text in HTML to an element, with the files that are in it beside it."""
     one, files = add(parent, tag), []
 
     def beside(found):
