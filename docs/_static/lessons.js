@@ -98,35 +98,62 @@
 
   const [FEW, MANY] = [3, 30]; // turns of a curve that oscillates; what has more is noise
 
+  // The points of a curve from one time to another, with those at its ends.
+  function during(points, from, until) {
+    const at = (time) => {
+      const n = points.findIndex(([x]) => x >= time);
+      if (n < 1) return n ? [] : [points[0]];
+      const [before, after] = [points[n - 1], points[n]];
+      return [[time, before[1] + ((time - before[0]) / (after[0] - before[0])) * (after[1] - before[1])]];
+    };
+    return [...at(from), ...points.filter(([x]) => x > from && x < until), ...at(until)];
+  }
+
+  // The values at which a curve turns.
+  const turnsOf = (values) => values.filter((y, n) => (y - values[n - 1]) * (values[n + 1] - y) < 0);
+
   // What a curve does from a time on, in words; points are (time, value), and goal is the setpoint, where there is one.
   function told(points, goal, time, value, [unitOfTime, unit]) {
     const values = points.map(([, y]) => y);
     const [first, last, low, high] = [values[0], values.at(-1), Math.min(...values), Math.max(...values)];
     if (low < value.at(0) || high > value.at(1)) return "leaves the picture"; // and how far, nobody knows here
     const [from, until] = [points[0][0], points.at(-1)[0]];
-    // where it rests: at its end, if it hardly moves any more, or else at the setpoint
-    const late = values.slice(Math.max(0, points.findLastIndex(([x]) => x < until - (until - from) / 5)));
-    const isAtRest = Math.max(...late) - Math.min(...late) < (SETTLED / 2) * (high - low);
-    const rest = isAtRest ? last : (goal ?? last);
+    // where it rests: at its end, or in the middle of its last waves, if it hardly moves any more, or else at the setpoint
+    const late = during(points, until - (until - from) / 5, until).map(([, y]) => y);
+    const [bottom, top] = [Math.min(...late), Math.max(...late)];
+    const isWave = turnsOf(late).length > 0;
+    const isAtRest = top - bottom < (isWave ? 2 * SETTLED : SETTLED / 2) * (high - low);
+    const isAround = bottom < goal && goal < top;
+    const rest = isAtRest && !isAround ? (isWave ? (bottom + top) / 2 : last) : (goal ?? last);
     const [way, rises] = [Math.abs(rest - first), rest > first];
-    const isStep = way > 0.3 * (high - low);
+    const isLoad = goal !== undefined && Math.abs(first - goal) < 2 * SETTLED * (high - low);
+    const isStep = way > 0.5 * (high - low) && !isLoad;
     const band = SETTLED * (isStep ? way : high - low);
     const k = values.findLastIndex((y) => Math.abs(y - rest) > band);
     const isSettled = k < values.length - 1 && (isAtRest || goal !== undefined);
-    const turns = values.filter((y, n) => (y - values[n - 1]) * (values[n + 1] - y) < 0 && Math.abs(y - rest) > band).length;
+    const turns = turnsOf(values).filter((y) => Math.abs(y - rest) > band).length;
     const says = [];
-    const isHigh = high - rest > rest - low;
+    const aim = isLoad ? goal : rest;
+    const isHigh = high - aim > aim - low;
     if (!isSettled && turns > FEW) {
       says.push(`${turns > MANY ? "varies" : "oscillates"} between ${value.says(low)} and ${value.says(high)}${unit}`);
-    } else if (isStep) says.push(`${last > first ? "rises" : "falls"} to ${value.says(last)}${unit}`);
-    else says.push(`${isHigh ? "rises" : "falls"} as far as ${value.says(isHigh ? high : low)}${unit}`);
-    if (!isSettled) return [...says, "has not settled"].join(", ");
+    } else if (isStep) {
+      const wrong = rises ? low : high;
+      const begun = values.findIndex((y) => Math.abs(y - first) > way / 2 && y > first === rises);
+      if (Math.abs(wrong - first) > band && values.indexOf(wrong) < begun) {
+        says.push(`${rises ? "falls" : "rises"} to ${value.says(wrong)}${unit} first`);
+      }
+      const peak = rises ? high : low;
+      const end = isSettled || Math.abs(peak - last) < band ? `to ${value.says(last)}` : `as far as ${value.says(peak)}`;
+      says.push(`${rises ? "rises" : "falls"} ${end}${unit}`);
+    } else says.push(`${isHigh ? "rises" : "falls"} as far as ${value.says(isHigh ? high : low)}${unit}`);
     const beyond = Math.round((100 * (rises ? high - rest : rest - low)) / way);
-    if (isStep && beyond > 0) says.push(`overshoots by ${beyond} %`);
+    if (isStep && beyond > 0 && (isAtRest || goal !== undefined)) says.push(`overshoots by ${beyond} %`);
+    if (!isSettled) return [...says, "has not settled"].join(", ");
     if (k < 0) return says.join(", ");
     const [before, after] = [points[k], points[k + 1]];
-    const share = (Math.abs(before[1] - rest) - band) / Math.abs(after[1] - before[1]);
-    const settled = before[0] + share * (after[0] - before[0]) - from;
+    const outside = (Math.abs(before[1] - rest) - band) / Math.abs(after[1] - before[1]);
+    const settled = before[0] + outside * (after[0] - before[0]) - from;
     return [...says, `settles after ${time.says(settled)}${unitOfTime}`].join(", ");
   }
 
@@ -263,13 +290,15 @@
       const moving = curves.filter(
         ([label, points]) => label !== "setpoint" && span(points, 0) > 0.1 * whole && span(points, 1) > 0.005 * height,
       );
-      return moving.slice(0, moving[0]?.[0] ? 2 : 1).map(([label, points]) => {
+      const all = moving.flatMap(([, points]) => points);
+      const spoken = panel && moving.length && !moving[0][0] ? [["", all]] : moving.slice(0, moving[0]?.[0] ? 2 : 1);
+      return spoken.map(([label, points]) => {
         const name = label || axis.replace(/ *\[.*/, "");
         const [low, high] = [Math.min, Math.max].map((end) => end(...points.map(([, y]) => y)));
         if (panel && (low < value.at(0) || high > value.at(1))) return `${name} leaves the picture.`;
         if (panel) return `${name} is between ${value.says(low)} and ${value.says(high)}${units[1]}.`;
         const says = times.map(([from, word], k) => {
-          const part = points.filter(([x]) => x >= from && x <= (times[k + 1]?.[0] ?? Infinity));
+          const part = during(points, from, times[k + 1]?.[0] ?? points.at(-1)[0]);
           const isStill = part.length < 3 || span(part, 1) < 0.005 * height;
           return isStill ? "" : `${word ? `after ${word} it ` : ""}${told(part, setpoint.at(-1)?.[1], time, value, units)}`;
         });

@@ -65,6 +65,7 @@ def asked_for(package: str, made_in: Path) -> list[str]:
 def environment(folder: Path) -> Path:
     """Make an environment in a folder, and return its Python."""
     venv.create(folder, with_pip=True)
+    folder.chmod(0o755)  # where root runs this, the jail's user must read the libraries
     return folder / ("Scripts" if os.name == "nt" else "bin") / "python"
 
 

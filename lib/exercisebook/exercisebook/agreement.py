@@ -78,7 +78,7 @@ def agree_in_time(key: Formula, given: Formula | np.ndarray, points: Mapping[str
     expected, _ = key.told_at(points)
     if not np.isfinite(expected).any():
         return False
-    measure = InTime(_sizes(expected, points["t"], isinstance(given, np.ndarray)))
+    measure = InTime(sizes_in_time(expected, points["t"], isinstance(given, np.ndarray)))
     left = max((LEFT_OF_VALUES if isinstance(given, np.ndarray) else LEFT_IN_TIME) * within, EXACT)
     counts = ~near_switches(key, points, within)
     comparison = Comparison(key, points, within, measure, left, counts, counts)
@@ -87,8 +87,8 @@ def agree_in_time(key: Formula, given: Formula | np.ndarray, points: Mapping[str
     return comparison.holds_for(given) and not _has_spike(key, given, points["t"], within)
 
 
-def _sizes(expected, times, is_flat):
-    """The size of a function beside which a difference counts, at each time: of one that grows, of what is near there.
+def sizes_in_time(expected: np.ndarray, times: np.ndarray, is_flat: bool) -> np.ndarray:
+    """Return the size of a function beside which a difference counts, at each time: of one that grows, near there.
 
     Where it is flat, it is the same at all times.
     """
@@ -107,7 +107,7 @@ def _has_spike(key, given, times, within):
     """Whether a function leaves the key at a moment of its own, or the values of the key beside a moment of that."""
     points = {"t": np.unique(np.concatenate([times, moments_of(given, times.max())]))}
     found, expected = given.values_at(points), key.values_at(points)
-    measure = InTime(_sizes(expected, points["t"], False))
+    measure = InTime(sizes_in_time(expected, points["t"], False))
     allowed = measure.size * (Rounded.of(key, points, within, measure).most + MORE_THAN_KEY * within + EXACT)
     far = np.abs(found - expected) > allowed
     near = near_switches(key, points, within)

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from exercisegrader.__main__ import app as grader
-from exercisegrader.__main__ import console, errors, fail
+from exercisegrader.__main__ import console, errors, fail, progress
 
 app = typer.Typer(
     name="loopbook",
@@ -143,6 +143,55 @@ def ledger(
         except OSError as error:
             fail(f"{path} cannot be written: {error.strerror}")
         console.print(f"{path} written", markup=False)
+
+
+@app.command()
+def export(
+    what: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="An assignment, or chapters and exercises of the bank, as 10 and 3.4; all if none is named."
+        ),
+    ] = None,
+    moodle: Annotated[Path | None, typer.Option(help="File for Moodle's question bank, as heater.xml.")] = None,
+    stack: Annotated[
+        bool,
+        typer.Option("--stack", help="With --moodle: formulas, lists and poles, as questions of its plug-in STACK."),
+    ] = False,
+    scorm: Annotated[
+        Path | None, typer.Option(help="File for a page of the bank's exercises, as practice.zip.")
+    ] = None,
+    variants: Annotated[int, typer.Option(min=1, help="Variants of each exercise for --moodle.")] = 5,
+) -> None:
+    """Write exercises for a learning management system: questions for its bank."""
+    from exercisebook.errors import ExerciseError
+    from exercisebook.export import moodle as questions
+    from exercisebook.export.stack import stack as formulas
+    from exercisegrader import GradingError
+    from exercisegrader.files import write
+    from loopbook.exporting import chosen
+
+    if not moodle:
+        fail("nothing says for what: expected --moodle FILE")
+    try:
+        given = chosen(what or [])
+        with progress("exporting") as show:
+            forms = [questions.cloze, formulas] if stack else [questions.cloze]
+            found = questions.exported(given.variants(variants, show), given.title, given.credit, forms)
+        ends = [f"-{count}" for count in range(1, len(found.files) + 1)] if len(found.files) > 1 else [""]
+        names = [moodle.with_stem(moodle.stem + end) for end in ends]
+        for name, content in zip(names, found.files, strict=False):
+            write(name, content)
+    except (ExerciseError, GradingError) as error:
+        fail(str(error))
+    if found.left_out:
+        kinds = ", ".join(sorted(set(found.left_out.values())))
+        says = f"{len(found.left_out)} left out, since they ask for what has no place there ({kinds})"
+        errors.print(f"{says}: {', '.join(found.left_out)}", style="yellow", markup=False)
+    if not found.files:
+        fail("nothing was written")
+    count = f"{found.questions} questions, exercises in variants: {len(given.numbers) - len(found.left_out)}"
+    console.print(f"{count}; {', '.join(map(str, names))}", markup=False)
 
 
 app.registered_commands += grader.registered_commands

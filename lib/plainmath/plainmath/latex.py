@@ -38,8 +38,10 @@ class _Printer(LatexPrinter):
 
     def _print_Symbol(self, expr, style="plain"):
         name = expr.name
-        is_word = len(name) > 2 and name.isalpha() and name not in _LETTERS  # such as a unit
-        return rf"\mathrm{{{name}}}" if is_word else super()._print_Symbol(expr)
+        if name.endswith("_tilde"):
+            return rf"\tilde{{{self._print(sympy.Symbol(name.removesuffix('_tilde')))}}}"
+        is_word = len(name) > 2 and name.isalpha() and name.lower() not in _LETTERS  # such as a unit
+        return rf"\mathrm{{{name}}}" if is_word else super()._print_Symbol(expr).replace(" ", ",")
 
     def _fraction(self, above, below):
         if not self.flat:
@@ -91,7 +93,8 @@ class _Printer(LatexPrinter):
         return text
 
     def _print_Rational(self, expr):
-        return str(expr.p) if expr.q == 1 else self._fraction(sympy.Integer(expr.p), sympy.Integer(expr.q))
+        sign = "-" if expr.p < 0 else ""
+        return str(expr.p) if expr.q == 1 else sign + self._fraction(sympy.Integer(abs(expr.p)), sympy.Integer(expr.q))
 
     def _print_exp(self, expr, exp=None):
         return f"e^{{{_Printer(flat=True).doprint(expr.args[0]).replace('- ', '-')}}}"

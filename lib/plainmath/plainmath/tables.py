@@ -249,23 +249,23 @@ def typeset(expression: Any) -> str:
 
 
 def is_symbol(name: str) -> bool:
-    """Whether a name is that of a symbol, K or T_1 or tau, which needs no other label.
+    """Whether a name is that of a symbol, K or y_SP_1 or tau, which needs no other label.
 
-    >>> is_symbol("T_1"), is_symbol("tau"), is_symbol("T_i_in_minutes"), is_symbol("2")
+    >>> is_symbol("y_SP_1"), is_symbol("tau"), is_symbol("T_i_in_minutes"), is_symbol("2")
     (True, True, False, False)
     """
-    letter, _, index = name.partition("_")
+    letter, *indices = name.split("_")
     is_letter = (len(letter) == 1 and letter.isalpha()) or letter in GREEK
-    return is_letter and len(index) <= 3 and "_" not in index
+    return is_letter and len(indices) <= 2 and all(len(index) <= 3 for index in indices)
 
 
 def symbol(name: str) -> str:
     """Return a name as a formula where it is a symbol, K or T_1 or tau, and as words otherwise.
 
-    >>> symbol("T_1"), symbol("time_to_rest")
-    ('$T_{1}$', 'time to rest')
+    >>> symbol("T_1"), symbol("y_SP_1"), symbol("time_to_rest")
+    ('$T_{1}$', '$y_{SP,1}$', 'time to rest')
     """
-    return f"${sympy.latex(sympy.Symbol(name))}$" if is_symbol(name) else name.replace("_", " ")
+    return f"${latex(sympy.Symbol(name))}$" if is_symbol(name) else name.replace("_", " ")
 
 
 def plain_words(text: str) -> str:

@@ -218,10 +218,14 @@ class Numbers(Kind):
 
     def near_each(self, answer: np.ndarray, key: np.ndarray) -> np.ndarray:
         """Which numbers are within the tolerance."""
-        allowed = _allowed(key, self.within, 1e-12)
+        return np.abs(answer - key) <= self.allowed(key)
+
+    def allowed(self, key: np.ndarray) -> np.ndarray:
+        """By how much each number may be off."""
+        off = allowed(key, self.within, 1e-12)
         if self.within <= ROUNDED:  # zero is zero, unless it is measured
-            allowed = np.where(key == 0, NOTHING * np.max(np.abs(key), initial=0.0), allowed)
-        return np.abs(answer - key) <= allowed
+            off = np.where(key == 0, NOTHING * np.max(np.abs(key), initial=0.0), off)
+        return off
 
     def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
         """Wrong sign, another unit, rows for columns, the order turned."""
@@ -326,12 +330,12 @@ class Poles(Kind):
 
     def matched(self, answer: np.ndarray) -> dict[int, int]:
         """Which of the answer's values are among the key's, each taken once: {place in it: place in the key}."""
-        allowed, pairs = _allowed(self.key, self.within, 1e-12), {}
+        off, pairs = allowed(self.key, self.within, 1e-12), {}
         sides, own_sides = self.sides(answer), self.sides(self.key)
         for place, value in enumerate(answer):
             left = [k for k in range(len(self.key)) if k not in pairs.values() and sides[place] == own_sides[k]]
             nearest = min(left, key=lambda k, value=value: abs(value - self.key[k]), default=None)
-            if nearest is not None and self._is_near(value, self.key[nearest], allowed[nearest]):
+            if nearest is not None and self._is_near(value, self.key[nearest], off[nearest]):
                 pairs[place] = nearest
         return pairs
 
@@ -566,8 +570,8 @@ def _row_of_text(row):
     return parts
 
 
-def _allowed(key, within, least):
-    """By how much each number may be off: a fraction of it, where it is 0 of the smallest other one."""
+def allowed(key: np.ndarray, within: float, least: float) -> np.ndarray:
+    """Return by how much each number may be off: a fraction of it, where it is 0 of the smallest other one."""
     sizes = np.abs(key)
     smallest = min(sizes[sizes > 0], default=1.0)
     return within * np.where(sizes == 0, smallest, sizes) + least * np.max(sizes, initial=0.0)
