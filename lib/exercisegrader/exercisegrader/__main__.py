@@ -259,6 +259,59 @@ def grade(
 
 
 @app.command()
+def insight(
+    assignment: Annotated[Path, typer.Argument(help="The assignment that was graded.")],
+    folder: Annotated[Path, typer.Argument(help="With its grades, or with progress that pages have saved (JSON).")],
+    students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
+) -> None:
+    """Say what a class tells: how hard each question is, for which numbers, and mistakes that no page knows yet."""
+    from exercisegrader import GradingError
+    from exercisegrader import insight as tells
+    from exercisegrader.assignment import load
+    from exercisegrader.files import write
+    from exercisegrader.roster import read_roster
+
+    try:
+        given, days, remarks = load(assignment), [], []
+        if (folder / "results").is_dir():
+            roster = read_roster(students or assignment.with_name("roster.csv"))
+            attempts = tells.of_results(given, folder, roster)
+            days = tells.by_day(attempts, {one.id: one.handed_in for one in roster})
+        else:
+            attempts, remarks = tells.of_progress(given, folder)
+        if not attempts:
+            raise GradingError(f"{folder} has neither grades of {given.name} nor progress in its exercises")
+        with progress("mining") as show:
+            text, table = tells.report(attempts, days, tells.mined(attempts, show))
+        write(folder / "insight.csv", table)
+    except GradingError as error:
+        fail(str(error))
+    for remark in remarks:
+        errors.print(remark, style="yellow", markup=False)
+    console.print(f"{text}\n\n{folder / 'insight.csv'} has it as a table", markup=False)
+
+
+@app.command()
+def whose(
+    assignment: Annotated[Path, typer.Argument(help="The assignment that was released.")],
+    posted: Annotated[str, typer.Argument(help='Numbers that somebody has posted, as "K=2.4, T=31".')],
+) -> None:
+    """Name the students whose numbers these are, by the record of the release."""
+    from exercisegrader import GradingError
+    from exercisegrader.assignment import load
+    from exercisegrader.insight import whose
+
+    try:
+        found = whose(load(assignment), posted)
+    except GradingError as error:
+        fail(str(error))
+    for student, name, says in found:
+        console.print(f"{student} {name}: {says}", markup=False)
+    if not found:
+        fail(f"nobody was given all of these numbers: {posted}")
+
+
+@app.command()
 def term(
     folder: Annotated[Path, typer.Argument(help="With the grades of each assignment in a folder, and term.toml.")],
 ) -> None:
