@@ -155,13 +155,17 @@ class Exercise(Declared):
 
 
 def collected(module: ModuleType) -> dict[str, Exercise]:
-    """Return the exercises that a module defines: {number: `Exercise`}. Raises ValueError where two have a number."""
+    """Return the exercises that a module defines, or has in a list: {number: `Exercise`}.
+
+    Raises ValueError where two have a number.
+    """
     found = {}
-    for one in vars(module).values():
-        if isinstance(one, Exercise):
-            if one.number in found:
-                raise ValueError(f"there are two exercises {one.number} in {module.__name__}: expected one")
-            found[one.number] = one
+    for value in vars(module).values():
+        for one in value if isinstance(value, list) else [value]:
+            if isinstance(one, Exercise):
+                if one.number in found:
+                    raise ValueError(f"there are two exercises {one.number} in {module.__name__}: expected one")
+                found[one.number] = one
     return in_order(found)
 
 

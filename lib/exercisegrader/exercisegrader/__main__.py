@@ -66,6 +66,9 @@ def release(
             "--for", help="Pack them, too, as students get them there: canvas, moodle or drive, a shared one."
         ),
     ] = None,
+    paper: Annotated[
+        bool, typer.Option("--paper", help="Write sheets to print (PDF) in place of notebooks; needs Chromium.")
+    ] = False,
 ) -> None:
     """Write one notebook per student: own numbers, places for answers, nothing of the key.
 
@@ -83,6 +86,11 @@ def release(
         given = load(assignment)
         given.demand_own_secret()
         roster = read_roster(students or assignment.with_name("roster.csv"))
+        if paper:
+            if replace or new_numbers or place:
+                fail("--paper writes sheets alone: expected no --replace, --new-numbers or --for beside it")
+            _release_on_paper(given, roster, to)
+            return
         if place:
             lms.demand_place(place)
         done = release(given, roster, to, replace=replace, new_numbers=new_numbers)
@@ -107,6 +115,21 @@ def release(
     console.print(f"{done.record} has their numbers: keep it with the assignment, grade needs it", markup=False)
     if packed:
         console.print(f"{beside} is for {place}. {packed.says}", markup=False)
+
+
+def _release_on_paper(given, roster, to):
+    """Write the sheets of a class, and say where what is."""
+    from exercisegrader import lms
+    from exercisegrader.paper import sheets
+
+    with progress("printing") as show:
+        done = sheets.release(given, roster, to, show)
+    for remark in (*lms.remarks(roster), *done.remarks):
+        errors.print(remark, style="yellow", markup=False)
+    console.print(f"{len(done.paths)} students have sheets of {given.title!r} in {to}", markup=False)
+    says = "all sheets in one file to print, the key with a table for points, and the empty table for answers"
+    console.print(f"{done.beside} is yours: {says}, which grade takes", markup=False)
+    console.print(f"{done.record} has their numbers: keep it with the assignment, grade needs it", markup=False)
 
 
 @app.command("try")
@@ -156,7 +179,9 @@ def try_out(
 @app.command()
 def grade(
     assignment: Annotated[Path, typer.Argument(help="The assignment that was released.")],
-    submissions: Annotated[Path, typer.Argument(help="Their folder, or the zip file of Canvas or Moodle.")],
+    submissions: Annotated[
+        Path, typer.Argument(help="Their folder, the zip file of Canvas or Moodle, or answers typed from paper (CSV).")
+    ],
     to: Annotated[Path, typer.Option(help="Folder for grades and feedback; after an interruption, the same one.")],
     students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
     only: Annotated[list[str] | None, typer.Option(help="Id of a student; grade this one and keep the others.")] = None,
@@ -231,6 +256,59 @@ def grade(
     console.print(f"{counts}; {to / 'summary.html'} tells the rest", markup=False)
     if done.failures:
         fail(f"{len(done.failures)} not graded")
+
+
+@app.command()
+def insight(
+    assignment: Annotated[Path, typer.Argument(help="The assignment that was graded.")],
+    folder: Annotated[Path, typer.Argument(help="With its grades, or with progress that pages have saved (JSON).")],
+    students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
+) -> None:
+    """Say what a class tells: how hard each question is, for which numbers, and mistakes that no page knows yet."""
+    from exercisegrader import GradingError
+    from exercisegrader import insight as tells
+    from exercisegrader.assignment import load
+    from exercisegrader.files import write
+    from exercisegrader.roster import read_roster
+
+    try:
+        given, days, remarks = load(assignment), [], []
+        if (folder / "results").is_dir():
+            roster = read_roster(students or assignment.with_name("roster.csv"))
+            attempts = tells.of_results(given, folder, roster)
+            days = tells.by_day(attempts, {one.id: one.handed_in for one in roster})
+        else:
+            attempts, remarks = tells.of_progress(given, folder)
+        if not attempts:
+            raise GradingError(f"{folder} has neither grades of {given.name} nor progress in its exercises")
+        with progress("mining") as show:
+            text, table = tells.report(attempts, days, tells.mined(attempts, show))
+        write(folder / "insight.csv", table)
+    except GradingError as error:
+        fail(str(error))
+    for remark in remarks:
+        errors.print(remark, style="yellow", markup=False)
+    console.print(f"{text}\n\n{folder / 'insight.csv'} has it as a table", markup=False)
+
+
+@app.command()
+def whose(
+    assignment: Annotated[Path, typer.Argument(help="The assignment that was released.")],
+    posted: Annotated[str, typer.Argument(help='Numbers that somebody has posted, as "K=2.4, T=31".')],
+) -> None:
+    """Name the students whose numbers these are, by the record of the release."""
+    from exercisegrader import GradingError
+    from exercisegrader.assignment import load
+    from exercisegrader.insight import whose
+
+    try:
+        found = whose(load(assignment), posted)
+    except GradingError as error:
+        fail(str(error))
+    for student, name, says in found:
+        console.print(f"{student} {name}: {says}", markup=False)
+    if not found:
+        fail(f"nobody was given all of these numbers: {posted}")
 
 
 @app.command()

@@ -7,9 +7,10 @@ child, behind the jail's walls.
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import threading
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
@@ -24,6 +25,7 @@ from exercisegrader.jail import USUAL, Jail, Limits, demand_hidden
 from exercisegrader.judge import Judge
 from exercisegrader.keeping import Kept, executed, source
 from exercisegrader.marking import Marking
+from exercisegrader.paper import typed
 from exercisegrader.released import Released
 from exercisegrader.reports import registered, write_all
 from exercisegrader.results import (
@@ -70,6 +72,7 @@ class Task:
     doubts: tuple[str, ...]
     chosen: str
     show: bool
+    typed: Mapping[str, Mapping[str, str]] | None = None
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,9 @@ class Desk:
     def graded(self, task: Task) -> Graded:
         """Return what becomes of a task. Raises GradingError where it has none, through no fault of the student."""
         outcome = Outcome(refused=task.problem)
-        if task.label and not task.problem:
+        if task.typed is not None:
+            outcome = Outcome(answers={number: dict(given) for number, given in task.typed.items()})
+        elif task.label and not task.problem:
             if self.jail is None:
                 with _starting:
                     self.judge.begin()
@@ -192,7 +197,7 @@ def grade(
     Arguments:
         assignment: `Assignment`.
         students: the roster.
-        submissions: folder or zip file.
+        submissions: folder or zip file, or the table with answers that were typed from paper.
         folder: where results and reports go.
         place: where submissions are graded, ``here(workers)``; ``here(1)`` if not given.
         extensions: the file that grants them to single students, if there is one.
@@ -222,9 +227,13 @@ def grade(
         raise GradingError(f"there is no student {unknown[0]!r} on the roster")
     if submissions.resolve() in (folder.resolve(), *folder.resolve().parents):  # and would be collected
         raise GradingError(f"{folder} lies among the submissions in {submissions}: expected a folder beside them")
-    if jailed:
+    on_paper = submissions.suffix.lower() == ".csv"
+    if jailed and not on_paper:
         demand_hidden(*filter(None, [assignment.path, submissions, folder]))
-    collection = collect(submissions, students, assignment.name, latest)
+    if on_paper:
+        collection = typed.collect(submissions, students, assignment, released)
+    else:
+        collection = collect(submissions, students, assignment.name, latest)
     notes = [*changes, *released.differences(assignment, [one.student for one in collection.submissions])]
     marking = Marking(folder, assignment, students, extensions, kept_ids)
     results, pages = Results(folder / "results", assignment.secret), Kept(folder / "notebooks")
@@ -238,7 +247,7 @@ def grade(
 
         def task(student):
             one = _task(assignment, released, student, found.get(student.id), jailed, limits)
-            asked = bool(one.label) and (keep_notebooks or pages.is_there(student.id))
+            asked = bool(one.label) and one.typed is None and (keep_notebooks or pages.is_there(student.id))
             return replace(one, show=asked and not pages.is_there(student.id, one.fingerprint))
 
         graded, kept, failures = 0, 0, []
@@ -284,19 +293,21 @@ def _gone(results, students, found, submissions):
 
 def _task(assignment, released, student, submission, jailed, limits):
     """The task of one student; without a submission, one without a label."""
-    label, content, problem, chosen = "", b"", "", ""
+    label, content, problem, chosen, answers = "", b"", "", "", None
     if submission:
         label, problem, chosen = submission.label, submission.problem, submission.chosen
+        answers = submission.answers
         if not problem:
             try:
                 content = submission.read()
             except GradingError as why:
                 problem = str(why)
     numbers, doubts = released.numbers(student.id), released.doubts(assignment, student.id, peek(content))
-    mark = fingerprint(assignment, numbers, content, label, problem or chosen, jailed, limits)
+    said = content if answers is None else json.dumps(answers).encode()
+    mark = fingerprint(assignment, numbers, said, label, problem or chosen, jailed, limits)
     return Task(
         assignment.name, assignment.source, str(assignment.path or ""), student.id, label, content, problem, jailed,
-        limits, mark, numbers, doubts, chosen, show=False,
+        limits, mark, numbers, doubts, chosen, False, answers,
     )  # fmt: skip
 
 

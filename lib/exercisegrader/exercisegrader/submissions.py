@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import datetime
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO
@@ -40,6 +40,7 @@ class Submission:
             a download, of unpacking, or what the student's machine said.
         late: whether its name says that it came late; None where it says nothing.
         chosen: "", or a sentence where it was chosen from several notebooks.
+        answers: {exercise: {name: text}} where they were typed from paper; None for a notebook.
     """
 
     student: Student
@@ -48,15 +49,18 @@ class Submission:
     handed_in: datetime.datetime | None = None
     late: bool | None = None
     chosen: str = ""
+    answers: Mapping[str, Mapping[str, str]] | None = None
     _open: Callable[[], IO[bytes]] | None = field(default=None, repr=False, compare=False)
 
     def read(self) -> bytes:
-        """The notebook without its outputs, as `sources.sources` returns it.
+        """The notebook without its outputs, as `sources.sources` returns it; of answers on paper, nothing.
 
         Raises GradingError where there is a problem, and where it is not a notebook or can no longer be read.
         """
         if self.problem:
             raise GradingError(self.problem)
+        if self.answers is not None:
+            return b""
         try:
             with self._open() as stream:
                 return sources.sources(stream)
@@ -156,7 +160,7 @@ def _submission(student, notebooks, latest):
     if not problem and entry.size > sources.LARGEST:
         problem = sources.TOO_LARGE
     opens = None if problem else entry.open
-    return Submission(student, entry.label, problem, student.handed_in, one.owner.late, chosen, opens)
+    return Submission(student, entry.label, problem, student.handed_in, one.owner.late, chosen, _open=opens)
 
 
 def _several(notebooks):

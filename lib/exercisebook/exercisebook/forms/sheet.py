@@ -151,7 +151,7 @@ class Sheet:
             ExerciseError: for what is none of these.
         """
         question = self.question
-        response = question.check(**self._given(answers))
+        response = question.check(**self.given(answers))
         notes = [self._in_a_page(note) for note in response.notes]
         verdicts = [{"name": v.name, "status": v.status, "says": v.says, "html": sentence(v.shown)}
                     for v in response.verdicts]  # fmt: skip
@@ -168,8 +168,8 @@ class Sheet:
         """Judge the key, and forget it: what that needs for the first time takes longer, and an answer need not."""
         copy.copy(self.question).check(**{name: kind.key for name, kind in self.question.key.items()})
 
-    def _given(self, answers):
-        """The answers as the exercise takes them."""
+    def given(self, answers: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what was typed and chosen as the exercise takes it; `check` says what it may be."""
         if not isinstance(answers, Mapping):
             raise ExerciseError(f"the answers are {answers!r:.60}: expected texts by the names of the fields")
         several = {field.name for field in self.fields if field.control == SEVERAL}
