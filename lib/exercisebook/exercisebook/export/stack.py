@@ -177,7 +177,7 @@ def _formula(kind: Expression, answer: str, known: list[Known]) -> tuple[str, li
         other = Rounded.of(one.value, points, kind.within, measure)
         values = one.value.values_at(points)[at[some]]
         beside = scale[some] if in_time else np.abs(values)
-        reach = (np.abs(other.reach[at[some]]) + left) * beside
+        reach = np.maximum((np.abs(other.reach[at[some]]) + left) * beside, left * scale[some])  # it may vanish
         if np.isfinite(values).all() and np.isfinite(reach).all() and np.max(np.abs(values)) < LARGEST:
             wrong.append(one)
             rows.append(_listed([_listed(values.real, 5), _listed(values.imag, 5), _listed(reach, 2)]))
