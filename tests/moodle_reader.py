@@ -5,6 +5,8 @@ Source: `question/type/multianswer/questiontype.php` and `question/type/numerica
 
 import html
 import re
+import shutil
+import subprocess
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
@@ -82,3 +84,27 @@ def _cell(found):
     assert any(share == 100 for share, *_ in alternatives)
     assert kind == "NUMERICAL" or len(alternatives) > 1
     return Cell(int(weight), kind, alternatives)
+
+
+def has_maxima():
+    """Whether there is a Maxima for `places`."""
+    return bool(shutil.which("maxima"))
+
+
+def places(element, tried):
+    """What Maxima says of answers to a STACK question: for each its place among the known ones, 0 where it is none.
+
+    Arguments:
+        element: the question.
+        tried: {number of a cell: answers as they are typed}.
+    """
+    lines = [element.findtext("questionvariables/text")]
+    trees = element.findall("prt")
+    for cell, answers in tried.items():
+        code = trees[cell - 1].findtext("feedbackvariables/text")
+        for typed in answers:
+            lines += [f"ans{cell}: {typed};", code, f'print("is", place{cell});']
+    program = "\n".join(["display2d: false;", *lines])
+    said = subprocess.run(["maxima", "--very-quiet"], input=program, capture_output=True, text=True, check=True).stdout
+    found = iter([int(one) for one in re.findall(r"^is (\d+)", said, re.MULTILINE)])
+    return {cell: [next(found) for _ in answers] for cell, answers in tried.items()}

@@ -52,6 +52,7 @@
       isKept = false;
     }
     for (const show of [...exercises, ...summaries]) show.showProgress();
+    document.dispatchEvent(new Event("loopbook-progress")); // scorm.js listens
   }
 
   function keyOf(number, student) {

@@ -162,19 +162,28 @@ def export(
         Path | None, typer.Option(help="File for a page of the bank's exercises, as practice.zip.")
     ] = None,
     variants: Annotated[int, typer.Option(min=1, help="Variants of each exercise for --moodle.")] = 5,
+    site: Annotated[Path, typer.Option(help="The site, from which --scorm takes its parts.")] = Path("build/book"),
 ) -> None:
-    """Write exercises for a learning management system: questions for its bank."""
+    """Write exercises for a learning management system: questions for its bank, or a page for practice."""
     from exercisebook.errors import ExerciseError
     from exercisebook.export import moodle as questions
     from exercisebook.export.stack import stack as formulas
     from exercisegrader import GradingError
     from exercisegrader.files import write
     from loopbook.exporting import chosen
+    from loopbook.scorm import package
 
-    if not moodle:
-        fail("nothing says for what: expected --moodle FILE")
+    if not moodle and not scorm:
+        fail("nothing says for what: expected --moodle FILE or --scorm FILE")
     try:
         given = chosen(what or [])
+        if scorm:
+            if given.is_assignment:
+                fail("the keys of an assignment would be in the page: expected exercises of the bank for --scorm")
+            write(scorm, package(given.numbers, given.title, site))
+            console.print(f"{len(given.numbers)} exercises in {scorm}, a SCORM 1.2 package, for practice", markup=False)
+        if not moodle:
+            return
         with progress("exporting") as show:
             forms = [questions.cloze, formulas] if stack else [questions.cloze]
             found = questions.exported(given.variants(variants, show), given.title, given.credit, forms)

@@ -21,6 +21,7 @@ from exercisebook.credit import NOTHING, Credit
 from exercisebook.export.cells import CannotHoldError, Cell, Known, cells
 from exercisebook.export.moodle import IN_A_TEXT, Held, add, add_text
 from exercisebook.forms.text import escaped, sentence
+from exercisebook.formulas import is_number
 from exercisebook.kinds import Expression, Number, Numbers, Poles, TimeFunction, Word, Words
 from exercisebook.kinds.kind import NONE
 from exercisebook.kinds.numeric import DAMPING, ON_AXIS, allowed
@@ -150,6 +151,7 @@ def _choice(place, word, is_right):
     return f'[{place}, {"true" if is_right else "false"}, "{text}"]'
 
 
+@np.errstate(all="ignore")
 def _formula(kind: Expression, answer: str, known: list[Known]) -> tuple[str, list[Known]]:
     """The code that compares a formula, and the known answers that have values where it is compared."""
     points, in_time = kind.points(), isinstance(kind, TimeFunction)
@@ -175,7 +177,7 @@ def _formula(kind: Expression, answer: str, known: list[Known]) -> tuple[str, li
         other = Rounded.of(one.value, points, kind.within, measure)
         values = one.value.values_at(points)[at[some]]
         beside = scale[some] if in_time else np.abs(values)
-        reach = (np.abs(other.reach[at[some]]) + left) * beside
+        reach = np.maximum((np.abs(other.reach[at[some]]) + left) * beside, left * scale[some])  # it may vanish
         if np.isfinite(values).all() and np.isfinite(reach).all() and np.max(np.abs(values)) < LARGEST:
             wrong.append(one)
             rows.append(_listed([_listed(values.real, 5), _listed(values.imag, 5), _listed(reach, 2)]))
@@ -202,7 +204,7 @@ def maxima(node: ast.expr, factors: Mapping[int, str] | None = None) -> str:
         case ast.Constant(value):
             found = _text(value, 15)
         case ast.Name(name):
-            found = CONSTANTS.get(name, name) if getattr(node, "is_number", False) else name
+            found = CONSTANTS[name] if is_number(node) else name
         case ast.UnaryOp(ast.USub(), inner):
             found = f"(-{maxima(inner, factors)})"
         case ast.UnaryOp(ast.UAdd(), inner):
