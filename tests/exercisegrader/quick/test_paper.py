@@ -118,23 +118,22 @@ def test_what_is_typed_is_judged_as_in_a_notebook(given, tmp_path):
         ),
         ("id,code,1 y,1 t\ns1001,AAAA,1,2", ["the code is 'AAAA', and the sheets of s1001 have "]),
         ("id,1 y\ns1001,1", ["there is no column '1 t'"]),
+        ("id,1 y,1 t\ns1003,1,2", ["answers of s1003, to whom nothing was released"]),
         ("id,1 y,1 t,1 T\ns1001,1", ["nothing is asked as '1 T'"]),
         ("id,1 y,1 y,1 t\ns1001,1", ["there are two columns '1 y'"]),
     ],
 )
 def test_all_faults_of_a_table_are_told_and_nothing_is_graded(given, tmp_path, table, says):
-    sheets.release(given, CLASS, tmp_path / "papers")
+    sheets.release(given, CLASS[:2], tmp_path / "papers")
     (tmp_path / "typed.csv").write_text(table, encoding="utf-8")
     with pytest.raises(GradingError) as told:
         grade(given, CLASS, tmp_path / "typed.csv", tmp_path / "grades")
     assert all(one in str(told.value) for one in says), str(told.value)
 
 
-def test_who_was_given_nothing_has_no_answers(given, tmp_path):
-    sheets.release(given, CLASS[:2], tmp_path / "papers")
-    (tmp_path / "typed.csv").write_text("id,1 y,1 t\ns1003,1,2", encoding="utf-8")
-    with pytest.raises(GradingError, match="answers of s1003, to whom nothing was released"):
-        grade(given, CLASS, tmp_path / "typed.csv", tmp_path / "grades")
+def test_an_assignment_may_have_its_exercises_in_a_list():
+    source = HEAD + ONE.format('"1"', 1, "y=x") + "EXERCISES = [first]\ndel first\n"
+    assert [*Assignment.of(source, "list").exercises] == ["1"]
 
 
 def test_what_paper_cannot_hold_is_said(monkeypatch):

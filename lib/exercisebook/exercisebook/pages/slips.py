@@ -17,7 +17,7 @@ from exercisebook.pages.page import Page
 _ALIKE = [{"sin", "cos", "tan"}, {"log", "ln", "log10"}, {"min", "max"}, {"asin", "acos", "atan"}]
 #: By these factors a whole quantity is wrong, and of these wholes it is the other part.
 _FACTORS = ("2", "pi", "2*pi", "10", "60", "100", "1000", "log(2)", "(1 - exp(-1))", "pi/180")
-_WHOLES = ("1", "100")
+_WHOLES = ("1", "100", "90", "180")
 #: So many slips of a quantity are enough.
 MOST = 600
 
