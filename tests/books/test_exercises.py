@@ -261,8 +261,12 @@ def test_there_are_exercises_for_all_that_is_taught():
 
 @each_exercise
 def test_variants_differ(exercise):
-    drawn = (exercise.question.__wrapped__(exercise, student) for student in STUDENTS[:20])
-    assert len({tuple(map(str, question.values.values())) for question in drawn}) >= 8
+    drawn = set()
+    for student in STUDENTS[:20]:
+        drawn.add(tuple(map(str, exercise.question.__wrapped__(exercise, student).values.values())))
+        if len(drawn) == 8:
+            return
+    raise AssertionError(f"20 students have {len(drawn)} variants")
 
 
 @each_exercise
@@ -273,6 +277,8 @@ def test_no_word_is_right_in_nearly_every_variant(exercise):
         key = exercise.question.__wrapped__(exercise, student).key
         for name in words:
             answers[name].append(str(key[name].key))
+        if all(len(found) - max(map(found.count, found)) >= 4 for found in answers.values()):
+            return  # whatever the others have
     for name, found in answers.items():
         most = max(map(found.count, found))
         assert most <= 36, f"{name} is {max(found, key=found.count)} in {most} of 40 variants"

@@ -113,9 +113,11 @@ def test_a_stack_question_finds_an_answer_where_our_judge_finds_it(number):
             share, says = expected(question, name, answer)
             says = sentence(says.partition(" \N{MIDDLE DOT} read as ")[0]).translate(moodle.IN_A_TEXT)
             assert (place == 1) == (share == 100), (name, str(answer))
-            assert place < 2 or says == sentences[place - 1], (name, str(answer))
-            unsaid += [says] if place == 0 and says and says in sentences else []
-    assert len(unsaid) <= sum(map(len, tried.values())) / 10  # of a mistake without values that Maxima can hold
+            assert place < 2 or says in sentences, (name, str(answer))
+            is_said = place == 1 or says == (sentences[place - 1] if place else "")
+            unsaid += [] if is_said or says not in sentences else [says]
+    # of a mistake without values that Maxima can hold, or of one of two that agree within the tolerance
+    assert len(unsaid) <= sum(map(len, tried.values())) / 10
 
 
 def test_the_command_writes_files_and_names_what_it_leaves_out(tmp_path):
