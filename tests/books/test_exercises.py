@@ -141,7 +141,9 @@ def test_an_answer_that_cannot_be_judged_says_what_is_expected(exercise):
             may_be_judged = (label == "truth" and "yes" in getattr(kind, "among", ())) or (
                 label == "empty list" and isinstance(kind, kinds.Words | kinds.Poles) and len(kind.key)
             )
-            assert verdict.status in (UNJUDGED, OPEN, *((WRONG, MISTAKE, RIGHT) if may_be_judged else ())), f"{label}: {verdict}"
+            assert verdict.status in (UNJUDGED, OPEN, *((WRONG, MISTAKE, RIGHT) if may_be_judged else ())), (
+                f"{label}: {verdict}"
+            )
             assert label != "empty list" or not verdict.is_right
             assert verdict.says
             assert "\n" not in verdict.says

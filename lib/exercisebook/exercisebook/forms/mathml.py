@@ -34,6 +34,7 @@ ATTRIBUTES = {
     "linebreak", "linethickness", "width", "columnalign", "columnspacing", "rowspacing", "minsize", "maxsize", "lspace",
     "rspace", "accent", "accentunder", "movablelimits", "notation",
 }  # fmt: skip
+SUMS = {"∫", "∑", "∏"}
 BIG = {"lim", "max", "min", "sup", "inf", "arg min", "arg max"}  # their index is below them in a displayed formula
 
 
@@ -66,7 +67,7 @@ def convert(latex: str, display: bool = False) -> str:
     tree.attrib.clear()
     if display:
         tree.set("display", "block")
-    elif large:
+    elif large and any(element.tag in HIGH or element.text in BIG | SUMS for element in tree.iter()):
         tree.set("displaystyle", "true")
     return ET.tostring(tree, encoding="unicode")
 
