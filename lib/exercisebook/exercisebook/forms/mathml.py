@@ -51,8 +51,6 @@ def convert(latex: str, display: bool = False) -> str:
     source = latex.strip()
     large = source.startswith(r"\displaystyle")
     source = source.removeprefix(r"\displaystyle").strip()
-    if large and source.count(r"\dfrac") == 1:  # it is large already
-        source = source.replace(r"\dfrac", r"\frac")
     try:
         tree = ET.fromstring(translate(_prepared(source), display="block" if display or large else "inline"))
     except Exception as problem:
@@ -64,6 +62,9 @@ def convert(latex: str, display: bool = False) -> str:
         for name in element.attrib.keys() - ATTRIBUTES:
             del element.attrib[name]
     _mend(tree, large=display or large)
+    for place, child in reversed(list(enumerate(tree))):
+        if child.tag == "mstyle" and (display or large):  # it is large already
+            tree[place : place + 1] = list(child)
     tree.attrib.clear()
     if display:
         tree.set("display", "block")
