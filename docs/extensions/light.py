@@ -43,9 +43,10 @@ class LightFormatter(HtmlFormatter):
 
 
 def lighten(app, pagename, templatename, context, doctree):
-    """Make the names of functions in a chapter light."""
+    """Make the names of functions in a chapter light, and leave out what keeps an empty first line of code."""
     if pagename.startswith(("chapters/", "solutions/")):
-        context["body"] = LINKED.sub(r'><code class="py-obj">\1</code>', context["body"])
+        body = LINKED.sub(r'><code class="py-obj">\1</code>', context["body"])
+        context["body"] = body.replace("<pre><span></span>", "<pre>")
 
 
 def setup(app):

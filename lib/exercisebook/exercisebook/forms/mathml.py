@@ -62,9 +62,10 @@ def convert(latex: str, display: bool = False) -> str:
         for name in element.attrib.keys() - ATTRIBUTES:
             del element.attrib[name]
     _mend(tree, large=display or large)
-    for place, child in reversed(list(enumerate(tree))):
-        if child.tag == "mstyle" and (display or large):  # it is large already
-            tree[place : place + 1] = list(child)
+    for row in (tree, *tree.findall("mrow")) if display or large else ():
+        for place, child in reversed(list(enumerate(row))):
+            if child.tag == "mstyle":  # it is large already
+                row[place : place + 1] = list(child)
     tree.attrib.clear()
     if display:
         tree.set("display", "block")
