@@ -34,6 +34,7 @@ class Known:
         says: the sentence on it, in which formulas are between dollars; empty for the right one.
         share: what it brings, in percent.
         low, high: between which a number is taken for it, both ends included.
+        is_own: whether the exercise declares it; what its kind knows of any answer comes behind.
     """
 
     value: Any
@@ -41,6 +42,7 @@ class Known:
     share: float = 100
     low: float = 0
     high: float = 0
+    is_own: bool = True
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,9 @@ def _known(question, name, kind, credit):
                 share, says = worth(sentence)
                 wrong = kind.like(value).key
                 if not kind.agrees(wrong):
-                    yield Known(wrong, says, (credit.mistake if is_own else 0) if share is None else share)
+                    yield Known(
+                        wrong, says, (credit.mistake if is_own else 0) if share is None else share, is_own=is_own
+                    )
 
 
 def _judged(question, name, kind, credit, wrong):

@@ -10,6 +10,7 @@ Source: `question/type/stack/questiontype.php` of STACK 4.11, and its documentat
 from __future__ import annotations
 
 import ast
+import itertools
 from collections.abc import Iterable, Mapping
 from importlib import resources
 from xml.etree import ElementTree
@@ -168,24 +169,42 @@ def _formula(kind: Expression, answer: str, known: list[Known]) -> tuple[str, li
         raise CannotHoldError("a formula of few values")
     at = safe[np.unique(np.linspace(0, safe.size - 1, POINTS + len(key.numbers)).astype(int))]
     left = max((LEFT_IN_TIME if in_time else LEFT) * kind.within, EXACT)
-    scale = measure.size[at] if isinstance(measure, InTime) else size[at]
+    scales = measure.size if isinstance(measure, InTime) else size
+    wrong, values, reaches = [], [], []
+    for one in known[1:]:
+        found = one.value.values_at(points)
+        reach = np.abs(Rounded.of(one.value, points, kind.within, measure).reach) + left
+        reach = np.maximum(reach * (scales if in_time else np.abs(found)), left * scales)  # it may vanish
+        if np.isfinite(found[safe]).all() and np.isfinite(reach[safe]).all() and np.max(np.abs(found[safe])) < LARGEST:
+            wrong.append(one)
+            values.append(found)
+            reaches.append(reach)
+    of_wrong = at[np.unique(np.linspace(0, at.size - 1, OF_MISTAKES).astype(int))]
+    of_wrong = _telling_apart([one.says for one in wrong], values, reaches, safe, of_wrong)
+    at = np.union1d(at, of_wrong)
+    some = np.searchsorted(at, of_wrong)
+    rows = [
+        _listed([_listed(one[of_wrong].real, 5), _listed(one[of_wrong].imag, 5), _listed(reach[of_wrong], 2)])
+        for one, reach in zip(values, reaches, strict=True)
+    ]
+    scale = scales[at]
     slopes = (key.slopes[:, at] * (1 if in_time else expected[at] / scale)).T  # of values beside their sizes
     ways = np.linalg.pinv(np.concatenate([slopes.real, slopes.imag]), rcond=1e-10) / np.tile(scale, 2)
-    some = np.unique(np.linspace(0, at.size - 1, OF_MISTAKES).astype(int))
-    wrong, rows = [], []
-    for one in known[1:]:
-        other = Rounded.of(one.value, points, kind.within, measure)
-        values = one.value.values_at(points)[at[some]]
-        beside = scale[some] if in_time else np.abs(values)
-        reach = np.maximum((np.abs(other.reach[at[some]]) + left) * beside, left * scale[some])  # it may vanish
-        if np.isfinite(values).all() and np.isfinite(reach).all() and np.max(np.abs(values)) < LARGEST:
-            wrong.append(one)
-            rows.append(_listed([_listed(values.real, 5), _listed(values.imag, 5), _listed(reach, 2)]))
     drawn = [
         _listed(f"{name} = {_text(np.broadcast_to(v, expected.shape)[k], 5)}" for name, v in points.items()) for k in at
     ]
-    said = [answer, _listed(rows), _listed(drawn), text, _listed(key.bounds), _listed(map(_listed, ways))]
+    own = f"{sum(one.is_own for one in wrong)}"
+    said = [answer, _listed(rows), own, _listed(drawn), text, _listed(key.bounds), _listed(map(_listed, ways))]
     return f"lb_formula({', '.join([*said, _listed(left * scale), _listed(some + 1)])})", [known[0], *wrong]
+
+
+def _telling_apart(says, values, reaches, places, chosen):
+    """The chosen places, and one more for each two mistakes with other sentences that agree at all of these."""
+    for (one, first, near), (two, second, far) in itertools.combinations(zip(says, values, reaches, strict=True), 2):
+        apart = np.abs(first - second) / (near + far)
+        if one != two and np.max(apart[chosen]) <= 1 < np.max(apart[places]):
+            chosen = np.append(chosen, places[np.argmax(apart[places])])
+    return np.unique(chosen)
 
 
 def maxima(node: ast.expr, factors: Mapping[int, str] | None = None) -> str:
