@@ -37,8 +37,8 @@ test-site: .venv/ready ## prove the site: its pages, in a browser, with Python i
 test-grading: .venv/ready ## prove the grader: jail, judge, reports, attacks, a term
 	$(python) -m pytest -n $(more) tests/exercisegrader tests/books_grading
 
-test-solutions: .venv/ready ## prove every cell of the solutions
-	$(python) -m pytest -n $(more) solutions
+test-solutions: .venv/ready ## prove every cell of the solutions, also with the numbers of other students
+	$(python) -m pytest -n $(more) solutions tests/solutions
 
 test-all: .venv/ready ## prove everything with all variants and all draws, as once a week
 	LOOPBOOK_ALL=1 $(python) -m pytest -n $(more) -o bookledger_mutation=true tests lib chapters solutions README.md

@@ -21,7 +21,8 @@ LANES = {
         "environment.txt",
     ],
     "test-solutions": [
-        "solutions/*", "lib/exercisebook/*", "lib/loopbook-books/loopbook/exercises/*", "environment.txt",
+        "solutions/*", "tests/solutions/*", "lib/exercisebook/*", "lib/loopbook-books/loopbook/exercises/*",
+        "environment.txt",
     ],
 }  # fmt: skip
 
