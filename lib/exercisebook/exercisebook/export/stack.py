@@ -199,9 +199,9 @@ def _formula(kind: Expression, answer: str, known: list[Known]) -> tuple[str, li
 
 
 def _telling_apart(says, values, reaches, places, chosen):
-    """The chosen places, and one more for each two mistakes with other sentences that agree at all of these."""
-    for (one, first, near), (two, second, far) in itertools.combinations(zip(says, values, reaches, strict=True), 2):
-        apart = np.abs(first - second) / (near + far)
+    """The chosen places, and one more for a mistake that is taken at all of these for an earlier with other words."""
+    for (one, first, reach), (two, second, _) in itertools.combinations(zip(says, values, reaches, strict=True), 2):
+        apart = np.abs(first - second) / reach
         if one != two and np.max(apart[chosen]) <= 1 < np.max(apart[places]):
             chosen = np.append(chosen, places[np.argmax(apart[places])])
     return np.unique(chosen)
