@@ -23,7 +23,7 @@ MOVED = {
     "03_modeling": {"section-3-5": ["equation-3-21"]},
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
     "16_tuning_relations": {
-        "table-12-3": ["figure-cell-103"],
+        "table-12-3": ["figure-cell-102", "figure-cell-103"],
         "figure-12-15-two-reaction-curves": ["check-seborg-figure-12-15"],
     },
     "17_dead_time_compensation": {"section-1": ["figure-cell-020"]},
