@@ -127,7 +127,7 @@ def _checked(cell: Cell, answer: str) -> tuple[dict[str, object], str, list[Know
         return _typed("2*x*y") | {"tans": maxima(kind.key.tree), "allowwords": words}, code, known
     if not np.size(kind.key):
         raise CannotHoldError("an empty list")
-    known = [one for one in known if np.size(one.value)]
+    known = [one for one in known if np.size(one.value) or isinstance(kind, Poles)]  # there may be none
     rows = [np.ravel(one.value) for one in known]
     if isinstance(kind, Poles):
         on_axis = _text(ON_AXIS * np.max(np.abs(kind.key)))
