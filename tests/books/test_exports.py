@@ -16,7 +16,7 @@ from exercisebook.export.cells import CannotHoldError, cells
 from exercisebook.export.stack import maxima, stack
 from exercisebook.forms.text import sentence
 from exercisebook.judging import MISTAKE, judge
-from exercisebook.kinds import Expression, Number, Numbers, Poles
+from exercisebook.kinds import Expression, Number, Numbers, Poles, TimeFunction
 from loopbook.__main__ import app
 from loopbook.exercises import bank
 from moodle_reader import has_maxima, places, read
@@ -82,6 +82,7 @@ def listed_and_formulas(cell):
     kind = cell.kind
     if isinstance(kind, Expression):
         forms = [kind.expr, sympy.expand(kind.expr), sympy.together(kind.expr), sympy.N(kind.expr, 7), 1.03 * kind.expr]
+        forms += [sympy.S(0), sympy.S(1)] if isinstance(kind, TimeFunction) else []  # no mistake is a constant
         values = [kind.read(str(one))[0] for one in forms] + [one.value for one in cell.known[1:]]
         return [(maxima(one.tree), one) for one in values if not one.decides]
     values = [np.asarray(one.value) for one in cell.known]

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import ast
 import itertools
+import re
 from collections.abc import Iterable, Mapping
 from importlib import resources
 from xml.etree import ElementTree
@@ -33,6 +34,8 @@ from exercisebook.rounding import InRatio, InTime, Measure, Rounded
 POINTS = 10
 #: Where all numbers together change a value by no more than so many times what each may; for a mistake, at so many.
 CALM, OF_MISTAKES = 20, 6
+#: A function of time that changes by less than so many times its size is not told from a constant.
+FLAT = 1e-3
 #: Between these sizes a value is safe in Maxima.
 SMALLEST, LARGEST = 1e-60, 1e60
 #: Functions that are called alike in Maxima, and what else is.
@@ -121,10 +124,10 @@ def _checked(cell: Cell, answer: str) -> tuple[dict[str, object], str, list[Know
     if isinstance(kind, Expression):
         code, known = _formula(kind, answer, known)
         words = ", ".join(sorted({"theta", "tau"}.union(one for one in kind.symbols if len(one) > 1)))
-        return {"type": "algebraic", "tans": maxima(kind.key.tree), "allowwords": words}, code, known
+        return _typed("2*x*y") | {"tans": maxima(kind.key.tree), "allowwords": words}, code, known
     if not np.size(kind.key):
         raise CannotHoldError("an empty list")
-    known = [one for one in known if np.size(one.value)]
+    known = [one for one in known if np.size(one.value) or isinstance(kind, Poles)]  # there may be none
     rows = [np.ravel(one.value) for one in known]
     if isinstance(kind, Poles):
         on_axis = _text(ON_AXIS * np.max(np.abs(kind.key)))
@@ -133,7 +136,13 @@ def _checked(cell: Cell, answer: str) -> tuple[dict[str, object], str, list[Know
     else:
         tests = [f"lb_row(lb_list({answer}), {_listed(row)}, {_listed(kind.allowed(row))})" for row in rows]
     shown = _listed(_listed(row) for row in kind.key) if kind.key.ndim > 1 else _listed(kind.key)
-    return {"type": "algebraic", "tans": shown}, f"lb_place({_listed(tests)})", known
+    example = "[[1, 2], [3, 4]]" if kind.key.ndim > 1 else "[1, 2 + 3*i]" if isinstance(kind, Poles) else "[1, 2]"
+    return _typed(example) | {"tans": shown}, f"lb_place({_listed(tests)})", known
+
+
+def _typed(example):
+    """An input whose empty field shows how one types: brackets and signs between symbols cannot be left out."""
+    return {"type": "algebraic", "syntaxhint": example, "syntaxattribute": 1}
 
 
 def _damped(kind, row):
@@ -167,20 +176,27 @@ def _formula(kind: Expression, answer: str, known: list[Known]) -> tuple[str, li
     )
     if safe.size < POINTS:
         raise CannotHoldError("a formula of few values")
-    at = safe[np.unique(np.linspace(0, safe.size - 1, POINTS + len(key.numbers)).astype(int))]
     left = max((LEFT_IN_TIME if in_time else LEFT) * kind.within, EXACT)
     scales = measure.size if isinstance(measure, InTime) else size
-    wrong, values, reaches = [], [], []
+    wrong, values, reaches, all_told = [], [], [], safe
     for one in known[1:]:
         found = one.value.values_at(points)
         reach = np.abs(Rounded.of(one.value, points, kind.within, measure).reach) + left
-        reach = np.maximum(reach * (scales if in_time else np.abs(found)), left * scales)  # it may vanish
-        if np.isfinite(found[safe]).all() and np.isfinite(reach[safe]).all() and np.max(np.abs(found[safe])) < LARGEST:
+        reach = reach * scales if in_time else np.minimum(reach, CALM * kind.within) * np.abs(found)
+        reach = np.maximum(reach, left * scales)  # it may vanish
+        told = all_told[(np.isfinite(found) & np.isfinite(reach) & (np.abs(found) < LARGEST))[all_told]]
+        enough = told.size >= max(POINTS, safe.size / 2)  # it is compared where it has values
+        if enough and in_time and re.search(r"\bt\b", one.value.text):  # no constant is taken for it
+            change = np.ptp(found[told].real)
+            enough, reach = change > FLAT * np.max(np.abs(found[told])), np.minimum(reach, change / 3)
+        if enough:
+            all_told = told
             wrong.append(one)
             values.append(found)
             reaches.append(reach)
+    at = all_told[np.unique(np.linspace(0, all_told.size - 1, POINTS + len(key.numbers)).astype(int))]
     of_wrong = at[np.unique(np.linspace(0, at.size - 1, OF_MISTAKES).astype(int))]
-    of_wrong = _telling_apart([one.says for one in wrong], values, reaches, safe, of_wrong)
+    of_wrong = _telling_apart([one.says for one in wrong], values, reaches, all_told, of_wrong)
     at = np.union1d(at, of_wrong)
     some = np.searchsorted(at, of_wrong)
     rows = [
