@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import nbformat
 from nbformat import NotebookNode, v4
 
+from exercisebook.forms.sheet import with_arrays
 from exercisebook.kinds.kind import literal
 from exercisebook.parameters import call
 from exercisegrader import GradingError, files
@@ -47,8 +48,8 @@ _OPENING = re.compile(r"""[^"'(\[{]*[(\[{]""")
 _TOGETHER = re.compile(r""""(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'|(?<!,) +""")
 _HOW_TO_ANSWER = (
     "Put your answers in the places of the dots and run the cells: each shows how your answer is read, and nothing "
-    "about right or wrong. You can answer as often as you like before you save this notebook and hand it in; the last "
-    "answer counts."
+    'about right or wrong. What is more than a number goes between quotes, as `"2 min"`. You can answer as often as '
+    "you like before you save this notebook and hand it in; the last answer counts."
 )
 
 
@@ -338,7 +339,7 @@ def asked(assignment: Assignment, student_id: str, number: str, values: Mapping[
 
 def statement_cells(question: Question) -> list[NotebookNode]:
     """Return the cells that put a question: the statement with its picture, and the data that it hands out."""
-    cell = v4.new_markdown_cell(str(question.statement))
+    cell = v4.new_markdown_cell(with_arrays(str(question.statement), "in the cell below"))
     if picture := question.picture:
         cell.source += f"\n\n![{as_markdown(picture.alt)}](attachment:picture.png)"
         cell.attachments = {"picture.png": {"image/png": base64.b64encode(picture.png()).decode()}}

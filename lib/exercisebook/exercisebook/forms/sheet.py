@@ -30,6 +30,15 @@ _CALLED = re.compile(r"\s*[A-Za-z]+\s*\(")
 _CALL = re.compile(r'`([^`=]+?)\s*=\s*exercise\("[^`]*`')
 
 
+def with_arrays(statement: str, where: str) -> str:
+    """Return a statement that says where its arrays are, and not how a chapter gets them.
+
+    >>> with_arrays('`t, y = exercise("1.1").given("t", "y")` are the record.', "in the cell below")
+    '`t, y` in the cell below are the record.'
+    """
+    return _CALL.sub(rf"`\1` {where}", statement)
+
+
 class Sheet:
     """An exercise, with the numbers of everybody or those of a name, as a page shows it.
 
@@ -62,7 +71,7 @@ class Sheet:
     @property
     def text(self) -> str:
         """The text of the statement as HTML, without its heading, its picture and what is asked."""
-        return html(_CALL.sub(r"`\1` in the file below", self._statement.body))
+        return html(with_arrays(self._statement.body, "in the file below"))
 
     @property
     def asked(self) -> str:
