@@ -22,6 +22,14 @@ MOVED = {
     "02_block_diagrams": {"example-2-2": ["equation-2-11"]},
     "03_modeling": {"section-3-5": ["equation-3-21"]},
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
+    "10_tuning": {
+        "section-10-5-4-further-an-adaptive-controller": [
+            "section-10-5-4",
+            "equation-10-38",
+            "check-haugen-section-10-5-4",
+        ],
+    },
+    "15_direct_synthesis": {"figure-12-1-block-diagram": ["check-seborg-figure-12-1-block-diagram"]},
     "16_tuning_relations": {
         "table-12-3": ["figure-cell-102", "figure-cell-103"],
         "figure-12-15-two-reaction-curves": ["check-seborg-figure-12-15"],
