@@ -13,6 +13,8 @@ from sphinx.highlighting import PygmentsBridge
 
 UNCOLOURED = {Name, Operator, Punctuation, Whitespace}
 LINKED = re.compile(r' title="[\w.]+"><code class="xref py py-obj[^>]*><span class="pre">([^<]*)</span></code>')
+#: What docutils calls every frame, of those of a notebook's cells, which have names of their own.
+FRAME = re.compile(r'(<div class="cell[^"]*?) docutils container(?=[ "])')
 #: A figure wider than so many pixels is a diagram whose letters are small already: on a phone it scrolls instead.
 WIDE = 600
 
@@ -43,10 +45,10 @@ class LightFormatter(HtmlFormatter):
 
 
 def lighten(app, pagename, templatename, context, doctree):
-    """Make the names of functions in a chapter light, and leave out what keeps an empty first line of code."""
+    """Make names of functions and frames of cells light, and leave out what keeps an empty first line of code."""
     if pagename.startswith(("chapters/", "solutions/")):
         body = LINKED.sub(r'><code class="py-obj">\1</code>', context["body"])
-        context["body"] = body.replace("<pre><span></span>", "<pre>")
+        context["body"] = FRAME.sub(r"\1", body.replace("<pre><span></span>", "<pre>"))
 
 
 def setup(app):
