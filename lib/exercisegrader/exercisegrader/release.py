@@ -48,8 +48,8 @@ _OPENING = re.compile(r"""[^"'(\[{]*[(\[{]""")
 _TOGETHER = re.compile(r""""(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'|(?<!,) +""")
 _HOW_TO_ANSWER = (
     "Put your answers in the places of the dots and run the cells: each shows how your answer is read, and nothing "
-    'about right or wrong. What is more than a number goes between quotes, as `"2 min"`. You can answer as often as '
-    "you like before you save this notebook and hand it in; the last answer counts."
+    'about right or wrong. What is no plain number or list goes between quotes, as `"2 min"`. You can answer as often '
+    "as you like before you save this notebook and hand it in; the last answer counts."
 )
 
 

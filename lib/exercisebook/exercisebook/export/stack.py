@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import ast
 import itertools
-import re
 from collections.abc import Iterable, Mapping
 from importlib import resources
 from xml.etree import ElementTree
@@ -186,7 +185,7 @@ def _formula(kind: Expression, answer: str, known: list[Known]) -> tuple[str, li
         reach = np.maximum(reach, left * scales)  # it may vanish
         told = all_told[(np.isfinite(found) & np.isfinite(reach) & (np.abs(found) < LARGEST))[all_told]]
         enough = told.size >= max(POINTS, safe.size / 2)  # it is compared where it has values
-        if enough and in_time and re.search(r"\bt\b", one.value.text):  # no constant is taken for it
+        if enough and in_time and "t" in _names(one.value.tree):  # no constant is taken for it
             change = np.ptp(found[told].real)
             enough, reach = change > FLAT * np.max(np.abs(found[told])), np.minimum(reach, change / 3)
         if enough:
@@ -212,6 +211,10 @@ def _formula(kind: Expression, answer: str, known: list[Known]) -> tuple[str, li
     own = f"{sum(one.is_own for one in wrong)}"
     said = [answer, _listed(rows), own, _listed(drawn), text, _listed(key.bounds), _listed(map(_listed, ways))]
     return f"lb_formula({', '.join([*said, _listed(left * scale), _listed(some + 1)])})", [known[0], *wrong]
+
+
+def _names(tree):
+    return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
 
 
 def _telling_apart(says, values, reaches, places, chosen):

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exercisebook.forms import Sheet
+from exercisebook.forms.sheet import with_arrays
 from exercisebook.forms.text import escaped, html, inline
 from exercisebook.kinds.kind import ELSEWHERE
 from exercisegrader import GradingError, files
@@ -127,6 +128,7 @@ def sheets(assignment: Assignment, student: Student, questions: Mapping[str, Que
 
     Raises GradingError where an exercise hands out more numbers than a sheet holds.
     """
+    _check_lengths(questions)
     ids = f"<code>{escaped(student.id)}</code> · {escaped(assignment.name)} · <code>{code}</code>"
     says = "\n\n".join(filter(None, [assignment.introduction, _HOW_TO_ANSWER, assignment.credit.says]))
     first = f"<h1>{inline(assignment.title)}</h1><p class=whose>{escaped(student.name)}</p>{html(says)}"
@@ -137,7 +139,7 @@ def sheets(assignment: Assignment, student: Student, questions: Mapping[str, Que
 def _exercise(question):
     """An exercise as HTML: the statement, a line for each answer, and space."""
     sheet, exercise, statement = Sheet(question), question.exercise, question.statement
-    text = sheet.text.replace("in the file below", "in the table below")
+    text = html(with_arrays(statement.body, "in the table below"))
     boxes = [" box" if kind.by_hand or kind.field["control"] == ELSEWHERE else "" for kind in question.key.values()]
     lines = [
         f"<div class='line{box}'><span>{inline(said)}</span></div>"
@@ -150,13 +152,21 @@ def _exercise(question):
     )
 
 
+def _check_lengths(questions):
+    """Raise GradingError where exercises hand out more numbers than a sheet holds, and name them all."""
+    rows = {number: Sheet(question).csv.splitlines() for number, question in questions.items()}
+    long = [
+        f"{n} ({len(one) - 1} of {one[0].replace(',', ', ')})" for n, one in rows.items() if len(one) > MOST_ROWS + 1
+    ]
+    if long:
+        raise GradingError(
+            f"no sheet holds the values that are handed out by exercise {', '.join(long)}: expected at most "
+            f"{MOST_ROWS}; leave out what has more, or let it show what is needed"
+        )
+
+
 def _data(sheet):
     rows = sheet.csv.splitlines()
-    if len(rows) > MOST_ROWS + 1:
-        raise GradingError(
-            f"exercise {sheet.number} hands out {len(rows) - 1} values of {rows[0].replace(',', ', ')}, which no sheet "
-            f"holds: expected at most {MOST_ROWS}; leave it out, or let it show what is needed"
-        )
     cells = ["".join(f"<td>{escaped(cell)}</td>" for cell in row.split(",")) for row in rows]
     return f"<table class=data>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>" if rows else ""
 
