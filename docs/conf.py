@@ -17,7 +17,7 @@ language = "en"
 
 extensions = [
     "myst_nb", "stored", "exercise_forms", "mathml", "library", "repository_pages",
-    "command_options", "calls", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive",
+    "command_options", "exercise_list", "calls", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive",
     "permanent", "single_figures", "described", "search_index", "python_in_pages", "reading", "light",
 ]  # fmt: skip
 exclude_patterns = ["lessons", "paper", "**/.ipynb_checkpoints"]

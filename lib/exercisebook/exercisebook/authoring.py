@@ -155,13 +155,14 @@ class Exercise(Declared):
 
 
 def collected(module: ModuleType) -> dict[str, Exercise]:
-    """Return the exercises that a module defines, or has in a list: {number: `Exercise`}.
+    """Return the exercises that a module defines, or has in a list: {number: `Exercise`}; a variant stands for its own.
 
     Raises ValueError where two have a number.
     """
     found = {}
     for value in vars(module).values():
         for one in value if isinstance(value, list) else [value]:
+            one = one.exercise if isinstance(one, Question) else one
             if isinstance(one, Exercise):
                 if one.number in found:
                     raise ValueError(f"there are two exercises {one.number} in {module.__name__}: expected one")

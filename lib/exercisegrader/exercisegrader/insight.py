@@ -100,7 +100,7 @@ def of_progress(assignment: Assignment, folder: Path) -> tuple[list[Attempt], li
     """Return what volunteers have answered in the pages, by the files that these saved, and what could not be read.
 
     Arguments:
-        assignment: with exercises of the pages, ``EXERCISES = [exercise("7.1").exercise]``.
+        assignment: with exercises of the pages, ``EXERCISES = [exercise("7.1")]``.
         folder: with the files, loopbook-progress.json under any names.
     """
     found, remarks = [], []

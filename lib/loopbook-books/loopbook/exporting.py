@@ -16,6 +16,9 @@ from plainmath.validation import did_you_mean
 if TYPE_CHECKING:
     from exercisebook.question import Question
 
+#: What names of chapters and exercises look like.
+FORM = "expected a chapter as 10, or an exercise as 3.4"
+
 
 @dataclass(frozen=True)
 class Chosen:
@@ -63,7 +66,7 @@ def chosen(names: Sequence[str]) -> Chosen:
     known |= {number: [number] for numbers in [*known.values()] for number in numbers}
     for name in names:
         if name not in known:
-            raise ExerciseError(f"there is no chapter or exercise {name!r}: {did_you_mean(name, known)}")
+            raise ExerciseError(f"there is no chapter or exercise {name!r}: {did_you_mean(name, known, FORM)}")
     numbers = [number for name in names or BANK.chapters() for number in known[name]]
     title = BANK.title(names[0]) if len(names) == 1 and "." not in names[0] else "Exercises in process control"
     return Chosen(title, list(dict.fromkeys(numbers)), lambda text, number: BANK.exercise(number, text))

@@ -134,6 +134,7 @@ def test_all_faults_of_a_table_are_told_and_nothing_is_graded(given, tmp_path, t
 def test_an_assignment_may_have_its_exercises_in_a_list():
     source = HEAD + ONE.format('"1"', 1, "y=x") + "EXERCISES = [first]\ndel first\n"
     assert [*Assignment.of(source, "list").exercises] == ["1"]
+    assert [*Assignment.of(source.replace("[first]", "[first.question()]"), "of_variants").exercises] == ["1"]
 
 
 def test_what_paper_cannot_hold_is_said(monkeypatch):

@@ -152,15 +152,18 @@ def _exercise(question):
     )
 
 
+def is_too_long(question: Question) -> bool:
+    """Return whether an exercise hands out more numbers than a sheet holds."""
+    return len(Sheet(question).csv.splitlines()) > MOST_ROWS + 1
+
+
 def _check_lengths(questions):
     """Raise GradingError where exercises hand out more numbers than a sheet holds, and name them all."""
-    rows = {number: Sheet(question).csv.splitlines() for number, question in questions.items()}
-    long = [
-        f"{n} ({len(one) - 1} of {one[0].replace(',', ', ')})" for n, one in rows.items() if len(one) > MOST_ROWS + 1
-    ]
+    long = {number: Sheet(one).csv.splitlines() for number, one in questions.items() if is_too_long(one)}
     if long:
+        named = [f"{n} ({len(rows) - 1} of {rows[0].replace(',', ', ')})" for n, rows in long.items()]
         raise GradingError(
-            f"no sheet holds the values that are handed out by exercise {', '.join(long)}: expected at most "
+            f"no sheet holds the values that are handed out by exercise {', '.join(named)}: expected at most "
             f"{MOST_ROWS}; leave out what has more, or let it show what is needed"
         )
 
