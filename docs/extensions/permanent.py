@@ -21,6 +21,57 @@ FIGURE = "figure_places"  # of a cell's metadata: the names of its figure, and i
 MOVED = {
     "02_block_diagrams": {"example-2-2": ["equation-2-11"]},
     "03_modeling": {"section-3-5": ["equation-3-21"]},
+    "07_feedback": {
+        "section-7-2": ["section-7-2-the-blocks-of-a-control-loop", "section-72--the-blocks-of-a-control-loop"],
+        "section-7-2-2": ["section-7-2-2-the-measurement-filter", "section-722--the-measurement-filter"],
+        "section-7-2-2-further": [
+            "section-7-2-2-further-bandwidth-and-why-a-larger-filter-is-slower-and-smoother",
+            "section-722-further--bandwidth-and-why-a-larger-filter-is-slower-and-smoother",
+        ],
+        "section-7-2-3": [
+            "section-7-2-3-further",
+            "section-7-2-3-scaling",
+            "section-7-2-4-further",
+            "section-723--scaling",
+        ],
+        "section-7-3-1": ["section-7-3-1-the-ideal-pid-controller", "section-731--the-ideal-pid-controller"],
+        "section-7-3-1-further": [
+            "section-7-3-1-further-the-terms-and-gains-on-other-panels",
+            "section-731-further--the-terms-and-gains-on-other-panels",
+        ],
+        "section-7-3-2": ["section-7-3-2-what-the-terms-are-for", "section-732--what-the-terms-are-for"],
+        "section-7-3-2-further": [
+            "section-7-3-2-further-what-is-left-of-the-error-and-of-each-term",
+            "section-732-further--what-is-left-of-the-error-and-of-each-term",
+        ],
+        "example-7-1": ["example-7-1-the-three-terms-at-work", "example-71--the-three-terms-at-work"],
+        "section-7-3-3": ["section-7-3-3-reverse-or-direct-action", "section-733--reverse-or-direct-action"],
+        "example-7-2": [
+            "example-7-2-a-pump-in-the-outlet",
+            "example-72--a-pump-in-the-outlet",
+            "section-7-3-3-further",
+            "section-7-3-3-further-the-sign-of-the-gain",
+            "section-733-further--the-sign-of-the-gain",
+        ],
+        "example-7-3": [
+            "example-7-3-three-ways-to-change-a-setpoint",
+            "example-73--three-ways-to-change-a-setpoint",
+        ],
+        "example-7-4": ["example-7-4-wind-up", "example-74--wind-up"],
+        "section-7-4-4-further": [
+            "section-7-4-4-further-bumpless-transfer",
+            "section-744-further--bumpless-transfer",
+        ],
+        "section-7-5": ["section-7-5-why-a-loop-can-become-unstable", "section-75--why-a-loop-can-become-unstable"],
+        "example-7-5": [
+            "example-7-5-too-much-gain-too-much-delay",
+            "example-75--too-much-gain-too-much-delay",
+        ],
+        "what-a-filter-costs-in-the-loop-section-7-2-2": [
+            "section-7-2-2-a-filter-in-the-loop",
+            "section-722--a-filter-in-the-loop",
+        ],
+    },
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
     "10_tuning": {
         "section-10-5-4-further-an-adaptive-controller": [
@@ -48,10 +99,14 @@ def names_of(title):
     (['equation-4', 'equation-5'], ['equation-7-89', 'equation-7-90', 'equation-7-91'])
     >>> names_of("Equations (12-5) and (12-6) · The controller"), names_of("Equations (5-50) to (5-52)")
     (['equation-12-5', 'equation-12-6'], ['equation-5-50', 'equation-5-51', 'equation-5-52'])
+    >>> names_of("At its limit, the integral term winds up (Example 7.4)"), names_of("A filter (Section 7.2.2, further)")
+    (['example-7-4'], ['section-7-2-2-further'])
     >>> names_of("How much damping?")
     []
     """
-    head = re.sub(r"(?<=\d)-(?=\d)", ".", title.partition(" · ")[0])  # Seborg writes 12-5
+    last = re.search(r" \(([A-Z][^()]*)\)$", title)
+    named = last[1] if last and not HEAD.match(title) else title.partition(" · ")[0]
+    head = re.sub(r"(?<=\d)-(?=\d)", ".", named)  # Seborg writes 12-5
     kind = HEAD.match(head)
     if not kind:
         return []
