@@ -80,7 +80,47 @@ MOVED = {
             "check-haugen-section-10-5-4",
         ],
     },
-    "15_direct_synthesis": {"figure-12-1-block-diagram": ["check-seborg-figure-12-1-block-diagram"]},
+    "15_direct_synthesis": {
+        "figure-12-1-block-diagram": [
+            "check-seborg-figure-12-1-block-diagram",
+            "figure-12-1-block-diagram-what-is-in-the-loop",
+            "figure-121-block-diagram--what-is-in-the-loop",
+        ],
+        "equation-12-11": [
+            "equation-12-11-pi-controller-for-a-lag-with-dead-time",
+            "equation-12-11--pi-controller-for-a-lag-with-dead-time",
+        ],
+        "equation-12-30": [
+            "equation-12-30-pid-controller-for-a-lag-with-dead-time",
+            "equation-12-30--pid-controller-for-a-lag-with-dead-time",
+        ],
+        "equation-12-14": [
+            "equation-12-14-pid-controller-for-two-lags-with-dead-time",
+            "equation-12-14--pid-controller-for-two-lags-with-dead-time",
+        ],
+        "table-12-1": ["table-12-1-settings-for-fifteen-models", "table-121--settings-for-fifteen-models"],
+        "internal-model-control-and-all-fifteen-rows-figure-12-2": [
+            "figure-12-2-internal-model-control",
+            "figure-122--internal-model-control",
+        ],
+        "example-12-1": [
+            "example-12-1-pid-control-of-two-lags-with-dead-time",
+            "example-121--pid-control-of-two-lags-with-dead-time",
+        ],
+        "figure-12-1-disturbance-responses": [
+            "figure-12-1-disturbance-responses-candidate-controllers",
+            "figure-121-disturbance-responses--candidate-controllers",
+        ],
+        "example-12-4": [
+            "example-12-4-three-pi-controllers-and-a-fourth",
+            "example-124--three-pi-controllers-and-a-fourth",
+        ],
+        "only-the-first-controller-recovers-slowly-figure-12-8": [
+            "figure-12-8-responses-of-the-four-controllers",
+            "figure-128--responses-of-the-four-controllers",
+        ],
+        "figure-12-8-further": ["figure-128-further"],
+    },
     "16_tuning_relations": {
         "table-12-3": ["figure-cell-102", "figure-cell-103"],
         "figure-12-15-two-reaction-curves": ["check-seborg-figure-12-15"],
