@@ -99,7 +99,7 @@ MOVED = {
             "equation-12-14--pid-controller-for-two-lags-with-dead-time",
         ],
         "table-12-1": ["table-12-1-settings-for-fifteen-models", "table-121--settings-for-fifteen-models"],
-        "internal-model-control-and-all-fifteen-rows-figure-12-2": [
+        "internal-model-control-and-two-rows-by-hand-figure-12-2": [
             "figure-12-2-internal-model-control",
             "figure-122--internal-model-control",
         ],
@@ -120,6 +120,7 @@ MOVED = {
             "figure-128--responses-of-the-four-controllers",
         ],
         "figure-12-8-further": ["figure-128-further"],
+        "table-12-1-cell-by-cell": ["table-121-cell-by-cell"],
     },
     "16_tuning_relations": {
         "table-12-3": ["figure-cell-102", "figure-cell-103"],
