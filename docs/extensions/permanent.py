@@ -140,7 +140,7 @@ def names_of(title):
     (['equation-4', 'equation-5'], ['equation-7-89', 'equation-7-90', 'equation-7-91'])
     >>> names_of("Equations (12-5) and (12-6) · The controller"), names_of("Equations (5-50) to (5-52)")
     (['equation-12-5', 'equation-12-6'], ['equation-5-50', 'equation-5-51', 'equation-5-52'])
-    >>> names_of("At its limit, the integral term winds up (Example 7.4)"), names_of("Filters (Section 7.2.2, further)")
+    >>> names_of("Wind-up at a limit, and how to halt it (Example 7.4)"), names_of("Filters (Section 7.2.2, further)")
     (['example-7-4'], ['section-7-2-2-further'])
     >>> names_of("How much damping?")
     []
