@@ -22,6 +22,57 @@ FIGURE = "figure_places"  # of a cell's metadata: the names of its figure, and i
 MOVED = {
     "02_block_diagrams": {"example-2-2": ["equation-2-11"]},
     "03_modeling": {"section-3-5": ["equation-3-21"]},
+    "07_feedback": {
+        "section-7-2": ["section-7-2-the-blocks-of-a-control-loop", "section-72--the-blocks-of-a-control-loop"],
+        "section-7-2-2": ["section-7-2-2-the-measurement-filter", "section-722--the-measurement-filter"],
+        "section-7-2-2-further": [
+            "section-7-2-2-further-bandwidth-and-why-a-larger-filter-is-slower-and-smoother",
+            "section-722-further--bandwidth-and-why-a-larger-filter-is-slower-and-smoother",
+        ],
+        "section-7-2-3": [
+            "section-7-2-3-further",
+            "section-7-2-3-scaling",
+            "section-7-2-4-further",
+            "section-723--scaling",
+        ],
+        "section-7-3-1": ["section-7-3-1-the-ideal-pid-controller", "section-731--the-ideal-pid-controller"],
+        "section-7-3-1-further": [
+            "section-7-3-1-further-the-terms-and-gains-on-other-panels",
+            "section-731-further--the-terms-and-gains-on-other-panels",
+        ],
+        "section-7-3-2": ["section-7-3-2-what-the-terms-are-for", "section-732--what-the-terms-are-for"],
+        "section-7-3-2-further": [
+            "section-7-3-2-further-what-is-left-of-the-error-and-of-each-term",
+            "section-732-further--what-is-left-of-the-error-and-of-each-term",
+        ],
+        "example-7-1": ["example-7-1-the-three-terms-at-work", "example-71--the-three-terms-at-work"],
+        "section-7-3-3": ["section-7-3-3-reverse-or-direct-action", "section-733--reverse-or-direct-action"],
+        "example-7-2": [
+            "example-7-2-a-pump-in-the-outlet",
+            "example-72--a-pump-in-the-outlet",
+            "section-7-3-3-further",
+            "section-7-3-3-further-the-sign-of-the-gain",
+            "section-733-further--the-sign-of-the-gain",
+        ],
+        "example-7-3": [
+            "example-7-3-three-ways-to-change-a-setpoint",
+            "example-73--three-ways-to-change-a-setpoint",
+        ],
+        "example-7-4": ["example-7-4-wind-up", "example-74--wind-up"],
+        "section-7-4-4-further": [
+            "section-7-4-4-further-bumpless-transfer",
+            "section-744-further--bumpless-transfer",
+        ],
+        "section-7-5": ["section-7-5-why-a-loop-can-become-unstable", "section-75--why-a-loop-can-become-unstable"],
+        "example-7-5": [
+            "example-7-5-too-much-gain-too-much-delay",
+            "example-75--too-much-gain-too-much-delay",
+        ],
+        "what-a-filter-costs-in-the-loop-section-7-2-2": [
+            "section-7-2-2-a-filter-in-the-loop",
+            "section-722--a-filter-in-the-loop",
+        ],
+    },
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
     "10_tuning": {
         "section-10-5-4-further-an-adaptive-controller": [
@@ -30,7 +81,48 @@ MOVED = {
             "check-haugen-section-10-5-4",
         ],
     },
-    "15_direct_synthesis": {"figure-12-1-block-diagram": ["check-seborg-figure-12-1-block-diagram"]},
+    "15_direct_synthesis": {
+        "figure-12-1-block-diagram": [
+            "check-seborg-figure-12-1-block-diagram",
+            "figure-12-1-block-diagram-what-is-in-the-loop",
+            "figure-121-block-diagram--what-is-in-the-loop",
+        ],
+        "equation-12-11": [
+            "equation-12-11-pi-controller-for-a-lag-with-dead-time",
+            "equation-12-11--pi-controller-for-a-lag-with-dead-time",
+        ],
+        "equation-12-30": [
+            "equation-12-30-pid-controller-for-a-lag-with-dead-time",
+            "equation-12-30--pid-controller-for-a-lag-with-dead-time",
+        ],
+        "equation-12-14": [
+            "equation-12-14-pid-controller-for-two-lags-with-dead-time",
+            "equation-12-14--pid-controller-for-two-lags-with-dead-time",
+        ],
+        "table-12-1": ["table-12-1-settings-for-fifteen-models", "table-121--settings-for-fifteen-models"],
+        "internal-model-control-and-two-rows-by-hand-figure-12-2": [
+            "figure-12-2-internal-model-control",
+            "figure-122--internal-model-control",
+        ],
+        "example-12-1": [
+            "example-12-1-pid-control-of-two-lags-with-dead-time",
+            "example-121--pid-control-of-two-lags-with-dead-time",
+        ],
+        "figure-12-1-disturbance-responses": [
+            "figure-12-1-disturbance-responses-candidate-controllers",
+            "figure-121-disturbance-responses--candidate-controllers",
+        ],
+        "example-12-4": [
+            "example-12-4-three-pi-controllers-and-a-fourth",
+            "example-124--three-pi-controllers-and-a-fourth",
+        ],
+        "only-the-first-controller-recovers-slowly-figure-12-8": [
+            "figure-12-8-responses-of-the-four-controllers",
+            "figure-128--responses-of-the-four-controllers",
+        ],
+        "figure-12-8-further": ["figure-128-further"],
+        "table-12-1-cell-by-cell": ["table-121-cell-by-cell"],
+    },
     "16_tuning_relations": {
         "table-12-3": ["figure-cell-102", "figure-cell-103"],
         "figure-12-15-two-reaction-curves": ["check-seborg-figure-12-15"],
