@@ -21,7 +21,60 @@ FIGURE = "figure_places"  # of a cell's metadata: the names of its figure, and i
 #: Places that are no more, and the section that stands for them: {chapter: {the section's name: the places}}.
 MOVED = {
     "02_block_diagrams": {"example-2-2": ["equation-2-11"]},
-    "03_modeling": {"section-3-5": ["equation-3-21"]},
+    "03_modeling": {
+        "section-3-2": ["section-3-2-the-balance-law", "section-32--the-balance-law"],
+        "example-3-1": [
+            "section-3-3-mass-balance",
+            "section-33--mass-balance",
+            "example-3-1-a-liquid-tank",
+            "example-31--a-liquid-tank",
+        ],
+        "example-3-1-further": [
+            "example-3-1-further-the-tank-that-runs-over",
+            "example-31-further--the-tank-that-runs-over",
+        ],
+        "example-3-2": ["example-3-2-a-blending-tank", "example-32--a-blending-tank"],
+        "example-3-2-further": [
+            "example-3-2-further-a-model-that-is-not-linear",
+            "example-32-further--a-model-that-is-not-linear",
+        ],
+        "example-3-3": [
+            "section-3-4-energy-balance",
+            "section-34--energy-balance",
+            "example-3-3-a-heated-liquid-tank",
+            "example-33--a-heated-liquid-tank",
+        ],
+        "more-power-then-a-colder-inflow-figure-3-13": [
+            "figure-3-13-simulation-of-the-heated-tank",
+            "figure-313--simulation-of-the-heated-tank",
+        ],
+        "example-3-3-further": [
+            "example-3-3-further-four-tests-of-a-model",
+            "example-33-further--four-tests-of-a-model",
+        ],
+        "section-3-5": ["equation-3-21", "section-3-5-motion", "section-35--motion"],
+        "example-3-4": ["example-3-4-a-motor-that-moves-a-load", "example-34--a-motor-that-moves-a-load"],
+        "section-3-5-further": [
+            "section-3-5-further-turning-and-a-mass-that-changes",
+            "section-35-further--turning-and-a-mass-that-changes",
+            "example-3-4-further",
+            "example-3-4-further-the-same-model-by-other-ways",
+            "example-34-further--the-same-model-by-other-ways",
+        ],
+        "section-3-6": ["section-3-6-circuits", "section-36--circuits"],
+        "section-3-6-further": [
+            "section-3-6-further-components-resistors-together-and-power",
+            "section-36-further--components-resistors-together-and-power",
+            "example-3-5-further",
+            "example-3-5-further-a-lowpass-filter",
+            "example-35-further--a-lowpass-filter",
+        ],
+        "example-3-5": ["example-3-5-an-rc-circuit", "example-35--an-rc-circuit"],
+        "exercises-further-a-filter-and-a-balance-seen-in-a-picture": [
+            "exercise-further-a-balance-seen-in-a-picture",
+            "exercise-further--a-balance-seen-in-a-picture",
+        ],
+    },
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
     "10_tuning": {
         "section-10-5-4-further-an-adaptive-controller": [
