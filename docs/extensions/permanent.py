@@ -18,62 +18,52 @@ NUMBER = re.compile(r"\(?\b((?:[A-Z]\.)?\d+(?:\.\d+)*)([a-z]?)\b\)?")
 HEAD = re.compile(rf"({'|'.join(KINDS)})s? (?=[(\dA-Z])", re.IGNORECASE)
 TAIL = re.compile(rf"\((({'|'.join(map(str.title, KINDS))})s? [(\dA-Z].*)\)$")  # behind the words of a heading
 FIGURE = "figure_places"  # of a cell's metadata: the names of its figure, and its title
-#: Places that are no more, and the section that stands for them: {chapter: {the section's name: the places}}.
+#: Places and headings that are no more, and the section that stands for them: {chapter: {the section's name: these}}.
 MOVED = {
     "02_block_diagrams": {"example-2-2": ["equation-2-11"]},
     "03_modeling": {
-        "section-3-2": ["section-3-2-the-balance-law", "section-32--the-balance-law"],
-        "example-3-1": [
-            "section-3-3-mass-balance",
-            "section-33--mass-balance",
-            "example-3-1-a-liquid-tank",
-            "example-31--a-liquid-tank",
-        ],
-        "example-3-1-further": [
-            "example-3-1-further-the-tank-that-runs-over",
-            "example-31-further--the-tank-that-runs-over",
-        ],
-        "example-3-2": ["example-3-2-a-blending-tank", "example-32--a-blending-tank"],
-        "example-3-2-further": [
-            "example-3-2-further-a-model-that-is-not-linear",
-            "example-32-further--a-model-that-is-not-linear",
-        ],
-        "example-3-3": [
-            "section-3-4-energy-balance",
-            "section-34--energy-balance",
-            "example-3-3-a-heated-liquid-tank",
-            "example-33--a-heated-liquid-tank",
-        ],
-        "more-power-then-a-colder-inflow-figure-3-13": [
-            "figure-3-13-simulation-of-the-heated-tank",
-            "figure-313--simulation-of-the-heated-tank",
-        ],
-        "example-3-3-further": [
-            "example-3-3-further-four-tests-of-a-model",
-            "example-33-further--four-tests-of-a-model",
-        ],
-        "section-3-5": ["equation-3-21", "section-3-5-motion", "section-35--motion"],
-        "example-3-4": ["example-3-4-a-motor-that-moves-a-load", "example-34--a-motor-that-moves-a-load"],
+        "section-3-2": ["Section 3.2 · The Balance law"],
+        "example-3-1": ["Section 3.3 · Mass balance", "Example 3.1 · A liquid tank"],
+        "example-3-1-further": ["Example 3.1, further · The tank that runs over"],
+        "example-3-2": ["Example 3.2 · A blending tank"],
+        "example-3-2-further": ["Example 3.2, further · A model that is not linear"],
+        "example-3-3": ["Section 3.4 · Energy balance", "Example 3.3 · A heated liquid tank"],
+        "more-power-then-a-colder-inflow-figure-3-13": ["Figure 3.13 · Simulation of the heated tank"],
+        "example-3-3-further": ["Example 3.3, further · Four tests of a model"],
+        "section-3-5": ["equation-3-21", "Section 3.5 · Motion"],
+        "example-3-4": ["Example 3.4 · A motor that moves a load"],
         "section-3-5-further": [
-            "section-3-5-further-turning-and-a-mass-that-changes",
-            "section-35-further--turning-and-a-mass-that-changes",
+            "Section 3.5, further · Turning, and a mass that changes",
             "example-3-4-further",
-            "example-3-4-further-the-same-model-by-other-ways",
-            "example-34-further--the-same-model-by-other-ways",
+            "Example 3.4, further · The same model by other ways",
         ],
-        "section-3-6": ["section-3-6-circuits", "section-36--circuits"],
+        "section-3-6": ["Section 3.6 · Circuits"],
         "section-3-6-further": [
-            "section-3-6-further-components-resistors-together-and-power",
-            "section-36-further--components-resistors-together-and-power",
+            "Section 3.6, further · Components, resistors together, and power",
             "example-3-5-further",
-            "example-3-5-further-a-lowpass-filter",
-            "example-35-further--a-lowpass-filter",
+            "Example 3.5, further · A lowpass filter",
         ],
-        "example-3-5": ["example-3-5-an-rc-circuit", "example-35--an-rc-circuit"],
+        "example-3-5": ["Example 3.5 · An RC circuit"],
         "exercises-further-a-filter-and-a-balance-seen-in-a-picture": [
-            "exercise-further-a-balance-seen-in-a-picture",
-            "exercise-further--a-balance-seen-in-a-picture",
+            "Exercise, further · A balance seen in a picture"
         ],
+    },
+    "06_dynamics": {
+        "section-6-2": ["Section 6.2 · The integrator"],
+        "example-6-1": ["Example 6.1 · A liquid tank is an integrator"],
+        "section-6-3": ["Section 6.3 · The time constant system"],
+        "one-step-response-shows-both-parameters-figure-6-2": [
+            "Figure 6.2 · Gain and time constant in a step response"
+        ],
+        "equation-6-14": ["Equation 6.14 · Reading off gain and time constant"],
+        "example-6-2": ["Example 6.2 · A heated liquid tank is a time constant system"],
+        "section-6-4": ["Section 6.4 · The time delay", "Figure 6.4 · The output is the input of a while ago"],
+        "section-6-5": ["Section 6.5 · Two time constants in series"],
+        "two-equal-lags-are-7-slower-than-the-sum-figure-6-5": [
+            "Figure 6.5 · Is the estimate confirmed?",
+            "figure-cell-116",
+        ],
+        "section-6-5-further": ["Section 6.5 · Second thoughts", "Example 6.2 · Is the heat loss negligible?"],
     },
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
     "10_tuning": {
@@ -119,6 +109,15 @@ def names_of(title):
     rest = re.sub(r"\b(and|to)\b", " ", NUMBER.sub(" ", head[kind.end() :]))
     more = f"-{slug(rest)}" if slug(rest) else ""
     return [f"{kind[1].lower()}-{slug(number)}{more}" for number in sorted(set(numbers), key=number_key)]
+
+
+def addresses(old):
+    """The places of an old heading, both of them; a place is itself.
+
+    >>> addresses("Example 3.5, further · A lowpass filter"), addresses("equation-3-21")
+    (['example-3-5-further-a-lowpass-filter', 'example-35-further--a-lowpass-filter'], ['equation-3-21'])
+    """
+    return [slug(old), re.sub(r"[^\w -]", "", old.lower()).replace(" ", "-")] if " " in old else [old]
 
 
 def number_key(number):
@@ -192,7 +191,7 @@ def name_sections(app, doctree):
         known |= set(names)
         section["ids"][:0] = [name for name in names if name not in section["ids"]]
         moved = MOVED.get(app.env.docname.removeprefix("chapters/"), {})
-        section["ids"] += [place for name in section["ids"] for place in moved.get(name, ())]
+        section["ids"] += [place for name in section["ids"] for old in moved.get(name, ()) for place in addresses(old)]
 
 
 def of_cell(cell):
