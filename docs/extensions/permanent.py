@@ -17,8 +17,9 @@ KINDS = ("example", "equation", "figure", "section", "table")
 NUMBER = re.compile(r"\(?\b((?:[A-Z]\.)?\d+(?:\.\d+)*)([a-z]?)\b\)?")
 BEHIND = re.compile(rf"\(((?:{'|'.join(KINDS)})s? (?=[(\dA-Z]).*)\)$", re.IGNORECASE)
 HEAD = re.compile(rf"({'|'.join(KINDS)})s? (?=[(\dA-Z])", re.IGNORECASE)
+TAIL = re.compile(rf"\((({'|'.join(map(str.title, KINDS))})s? [(\dA-Z].*)\)$")  # behind the words of a heading
 FIGURE = "figure_places"  # of a cell's metadata: the names of its figure, and its title
-#: Places that are no more, and the section that stands for them: {chapter: {the section's name: the places}}.
+#: Places and headings that are no more, and the section that stands for them: {chapter: {the section's name: these}}.
 MOVED = {
     "02_block_diagrams": {"example-2-2": ["equation-2-11"]},
     "03_modeling": {"section-3-5": ["equation-3-21"]},
@@ -72,6 +73,50 @@ MOVED = {
             "section-7-2-2-a-filter-in-the-loop",
             "section-722--a-filter-in-the-loop",
         ],
+    },
+    "03_modeling": {
+        "section-3-2": ["Section 3.2 · The Balance law"],
+        "example-3-1": ["Section 3.3 · Mass balance", "Example 3.1 · A liquid tank"],
+        "example-3-1-further": ["Example 3.1, further · The tank that runs over"],
+        "example-3-2": ["Example 3.2 · A blending tank"],
+        "example-3-2-further": ["Example 3.2, further · A model that is not linear"],
+        "example-3-3": ["Section 3.4 · Energy balance", "Example 3.3 · A heated liquid tank"],
+        "more-power-then-a-colder-inflow-figure-3-13": ["Figure 3.13 · Simulation of the heated tank"],
+        "example-3-3-further": ["Example 3.3, further · Four tests of a model"],
+        "section-3-5": ["equation-3-21", "Section 3.5 · Motion"],
+        "example-3-4": ["Example 3.4 · A motor that moves a load"],
+        "section-3-5-further": [
+            "Section 3.5, further · Turning, and a mass that changes",
+            "example-3-4-further",
+            "Example 3.4, further · The same model by other ways",
+        ],
+        "section-3-6": ["Section 3.6 · Circuits"],
+        "section-3-6-further": [
+            "Section 3.6, further · Components, resistors together, and power",
+            "example-3-5-further",
+            "Example 3.5, further · A lowpass filter",
+        ],
+        "example-3-5": ["Example 3.5 · An RC circuit"],
+        "exercises-further-a-filter-and-a-balance-seen-in-a-picture": [
+            "Exercise, further · A balance seen in a picture"
+        ],
+    },
+    "06_dynamics": {
+        "section-6-2": ["Section 6.2 · The integrator"],
+        "example-6-1": ["Example 6.1 · A liquid tank is an integrator"],
+        "section-6-3": ["Section 6.3 · The time constant system"],
+        "one-step-response-shows-both-parameters-figure-6-2": [
+            "Figure 6.2 · Gain and time constant in a step response"
+        ],
+        "equation-6-14": ["Equation 6.14 · Reading off gain and time constant"],
+        "example-6-2": ["Example 6.2 · A heated liquid tank is a time constant system"],
+        "section-6-4": ["Section 6.4 · The time delay", "Figure 6.4 · The output is the input of a while ago"],
+        "section-6-5": ["Section 6.5 · Two time constants in series"],
+        "two-equal-lags-are-7-slower-than-the-sum-figure-6-5": [
+            "Figure 6.5 · Is the estimate confirmed?",
+            "figure-cell-116",
+        ],
+        "section-6-5-further": ["Section 6.5 · Second thoughts", "Example 6.2 · Is the heat loss negligible?"],
     },
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
     "10_tuning": {
@@ -156,6 +201,15 @@ def names_of(title):
     rest = re.sub(r"\b(and|to)\b", " ", NUMBER.sub(" ", head[kind.end() :]))
     more = f"-{slug(rest)}" if slug(rest) else ""
     return [f"{kind[1].lower()}-{slug(number)}{more}" for number in sorted(set(numbers), key=number_key)]
+
+
+def addresses(old):
+    """The places of an old heading, both of them; a place is itself.
+
+    >>> addresses("Example 3.5, further · A lowpass filter"), addresses("equation-3-21")
+    (['example-3-5-further-a-lowpass-filter', 'example-35-further--a-lowpass-filter'], ['equation-3-21'])
+    """
+    return [slug(old), re.sub(r"[^\w -]", "", old.lower()).replace(" ", "-")] if " " in old else [old]
 
 
 def number_key(number):
