@@ -44,6 +44,25 @@ MOVED = {
     },
     "02_block_diagrams": {"example-2-2": ["equation-2-11"]},
     "03_modeling": {"section-3-5": ["equation-3-21"]},
+    "04_laplace": {
+        "example-4-1": ["example-4-1-the-transform-of-a-step", "example-41--the-transform-of-a-step"],
+        "section-4-3": ["section-4-3-laplace-transform-pairs", "section-43--laplace-transform-pairs"],
+        "section-4-4": ["section-4-4-properties", "section-44--properties"],
+        "example-4-2": [
+            "example-4-2-a-differential-equation-and-its-response",
+            "example-42--a-differential-equation-and-its-response",
+        ],
+        "example-4-3": ["example-4-3-where-the-response-ends", "example-43--where-the-response-ends"],
+        "what-the-pole-tells": ["four-poles"],
+        "every-pair-returns-and-equal-lags-section-4-3": [
+            "section-4-3-the-way-back-and-equal-lags",
+            "section-43--the-way-back-and-equal-lags",
+        ],
+        "where-the-rules-come-from-section-4-4": [
+            "section-4-4-where-the-rules-come-from",
+            "section-44--where-the-rules-come-from",
+        ],
+    },
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
     "10_tuning": {
         "section-10-5-4-further-an-adaptive-controller": [
