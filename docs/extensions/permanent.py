@@ -21,6 +21,28 @@ TAIL = re.compile(rf"\((({'|'.join(map(str.title, KINDS))})s? [(\dA-Z].*)\)$")  
 FIGURE = "figure_places"  # of a cell's metadata: the names of its figure, and its title
 #: Places and headings that are no more, and the section that stands for them: {chapter: {the section's name: these}}.
 MOVED = {
+    "01_introduction": {
+        "section-1-1": ["section-1-1-control-by-feedback", "section-11--control-by-feedback"],
+        "section-1-2": ["section-1-2-the-wood-chip-tank", "section-12--the-wood-chip-tank", "figure-cell-010"],
+        "equation-1-1": ["equation-1-1-the-control-error", "equation-11--the-control-error"],
+        "after-each-step-the-controller-brings-the-error-back-to-zero-figure-1-3": [
+            "figure-1-3-the-level-control-system-at-work",
+            "figure-13--the-level-control-system-at-work",
+        ],
+        "without-control-the-tank-runs-empty-and-a-gain-alone-leaves-an-error": ["what-if-nobody-controls"],
+        "signs-noise-and-a-proof-that-no-error-is-left-figure-1-3": [
+            "figure-1-3-what-exactly-happens",
+            "figure-13--what-exactly-happens",
+        ],
+        "good-control-reduces-the-control-error-figure-1-4": [
+            "figure-1-4-good-control-reduces-the-control-error",
+            "figure-14--good-control-reduces-the-control-error",
+        ],
+        "section-1-4": [
+            "section-1-4-things-to-think-about-computed",
+            "section-14--things-to-think-about-computed",
+        ],
+    },
     "02_block_diagrams": {"example-2-2": ["equation-2-11"]},
     "03_modeling": {"section-3-5": ["equation-3-21"]},
     "07_feedback": {
@@ -117,6 +139,25 @@ MOVED = {
             "figure-cell-116",
         ],
         "section-6-5-further": ["Section 6.5 · Second thoughts", "Example 6.2 · Is the heat loss negligible?"],
+    },
+    "04_laplace": {
+        "example-4-1": ["example-4-1-the-transform-of-a-step", "example-41--the-transform-of-a-step"],
+        "section-4-3": ["section-4-3-laplace-transform-pairs", "section-43--laplace-transform-pairs"],
+        "section-4-4": ["section-4-4-properties", "section-44--properties"],
+        "example-4-2": [
+            "example-4-2-a-differential-equation-and-its-response",
+            "example-42--a-differential-equation-and-its-response",
+        ],
+        "example-4-3": ["example-4-3-where-the-response-ends", "example-43--where-the-response-ends"],
+        "what-the-pole-tells": ["four-poles"],
+        "every-pair-returns-and-equal-lags-section-4-3": [
+            "section-4-3-the-way-back-and-equal-lags",
+            "section-43--the-way-back-and-equal-lags",
+        ],
+        "where-the-rules-come-from-section-4-4": [
+            "section-4-4-where-the-rules-come-from",
+            "section-44--where-the-rules-come-from",
+        ],
     },
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
     "10_tuning": {
