@@ -67,7 +67,7 @@ MOVED = {
             "example-7-5-too-much-gain-too-much-delay",
             "example-75--too-much-gain-too-much-delay",
         ],
-        "what-a-filter-costs-in-the-loop-section-7-2-2": [
+        "a-filter-in-the-loop-costs-stability-section-7-2-2": [
             "section-7-2-2-a-filter-in-the-loop",
             "section-722--a-filter-in-the-loop",
         ],
