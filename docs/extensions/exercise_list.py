@@ -1,6 +1,7 @@
 """The directive `exercise-list`: all exercises of the bank, with what they ask for and where they can be used."""
 
 import exercise_forms
+import slugs
 from sphinx.util.docutils import SphinxDirective
 
 from exercisebook.export.cells import CannotHoldError
@@ -35,7 +36,7 @@ def listed():
         for number, one in bank.exercises(chapter).items():
             question = exercise_forms.sheet(number).question
             asked = dict.fromkeys(kind.maker.replace("_", " ") for kind in question.key.values())
-            link = f"[{number} {one.title}](chapters/{pages[number]}.ipynb#exercise-{number.replace('.', '-')})"
+            link = f"[{number} {one.title}](chapters/{pages[number]}.ipynb#exercise-{slugs.slug(number)})"
             yield f"| {link} | {', '.join(asked)} | {one.points:g} | {', '.join(places(question))} |"
 
 
