@@ -16,6 +16,7 @@ from slugs import slug
 KINDS = ("example", "equation", "figure", "section", "table")
 NUMBER = re.compile(r"\(?\b((?:[A-Z]\.)?\d+(?:\.\d+)*)([a-z]?)\b\)?")
 HEAD = re.compile(rf"({'|'.join(KINDS)})s? (?=[(\dA-Z])", re.IGNORECASE)
+LAST = re.compile(rf"\((({'|'.join(KINDS)})s? [(\dA-Z].*)\)$", re.IGNORECASE)  # a place in brackets, behind the words
 FIGURE = "figure_places"  # of a cell's metadata: the names of its figure, and its title
 #: Places that are no more, and the section that stands for them: {chapter: {the section's name: the places}}.
 MOVED = {
@@ -48,10 +49,13 @@ def names_of(title):
     (['equation-4', 'equation-5'], ['equation-7-89', 'equation-7-90', 'equation-7-91'])
     >>> names_of("Equations (12-5) and (12-6) · The controller"), names_of("Equations (5-50) to (5-52)")
     (['equation-12-5', 'equation-12-6'], ['equation-5-50', 'equation-5-51', 'equation-5-52'])
+    >>> names_of("The Good Gain method (Section 10.2)"), names_of("A step, with steady states (Equations (3) and (4))")
+    (['section-10-2'], ['equation-3', 'equation-4'])
     >>> names_of("How much damping?")
     []
     """
-    head = re.sub(r"(?<=\d)-(?=\d)", ".", title.partition(" · ")[0])  # Seborg writes 12-5
+    last = LAST.search(title)
+    head = re.sub(r"(?<=\d)-(?=\d)", ".", last[1] if last else title.partition(" · ")[0])  # Seborg writes 12-5
     kind = HEAD.match(head)
     if not kind:
         return []
