@@ -36,7 +36,16 @@ MOVED = {
         "figure-12-15-two-reaction-curves": ["check-seborg-figure-12-15"],
     },
     "17_dead_time_compensation": {"section-1": ["figure-cell-020"]},
-    "18_integral_criteria": {"more-than-one-dead-time": ["figure-cell-134"]},
+    "18_integral_criteria": {
+        "when-the-dead-time-changes-figures-3-and-4": [
+            "figures-3-and-4-the-dead-time-changes",
+            "figures-3-and-4--the-dead-time-changes",
+        ],
+        "section-2": ["section-2-what-the-paper-says-of-it", "section-2--what-the-paper-says-of-it"],
+        "equation-2": ["equation-2-the-error-of-a-pi-loop", "equation-2--the-error-of-a-pi-loop"],
+        "equation-3": ["equation-3-the-residues-of-a-pi-loop", "equation-3--the-residues-of-a-pi-loop"],
+        "more-than-one-dead-time": ["figure-cell-134"],
+    },
 }
 
 
