@@ -24,10 +24,70 @@ MOVED = {
     "03_modeling": {"section-3-5": ["equation-3-21"]},
     "08_feedforward": {"example-8-1": ["equation-8-3", "equation-8-4"]},
     "10_tuning": {
-        "section-10-5-4-further-an-adaptive-controller": [
+        "section-10-2": ["section-10-2-the-good-gain-method", "section-102--the-good-gain-method"],
+        "example-10-1": [
+            "example-10-1-the-good-gain-method-on-the-wood-chip-tank",
+            "example-101--the-good-gain-method-on-the-wood-chip-tank",
+        ],
+        "section-10-3-1": [
+            "section-10-3-1-the-idea-of-skogestad-s-method",
+            "section-1031--the-idea-of-skogestads-method",
+        ],
+        "table-10-1": ["table-10-1-skogestad-s-formulas", "table-101--skogestads-formulas"],
+        "example-10-2": ["example-10-2-a-lag-with-dead-time", "example-102--a-lag-with-dead-time"],
+        "tuning-in-plain-python-control": ["the-same-in-plain-python-control"],
+        "section-10-1": ["section-10-1-and-ziegler-and-nichols", "section-101--and-ziegler-and-nichols"],
+        "section-10-4": ["section-10-4-auto-tuning-with-a-relay", "section-104--auto-tuning-with-a-relay"],
+        "section-10-5": ["section-10-5-when-the-process-changes", "section-105--when-the-process-changes"],
+        "section-10-2-further": [
+            "section-10-2-further-what-the-method-relies-on",
+            "section-102-further--what-the-method-relies-on",
+        ],
+        "section-10-3-1-further": [
+            "section-10-3-1-further-where-disturbances-enter",
+            "section-1031-further--where-disturbances-enter",
+        ],
+        "table-10-1-further": ["table-10-1-further-every-row-derived", "table-101-further--every-row-derived"],
+        "section-10-3-2-further": ["section-10-3-2-further-two-or-four", "section-1032-further--two-or-four"],
+        "section-10-1-further": [
+            "section-10-1-further-the-book-s-three-reasons",
+            "section-101-further--the-books-three-reasons",
+        ],
+        "section-10-3-3-further": [
+            "section-10-3-3-further-models-from-step-responses",
+            "section-1033-further--models-from-step-responses",
+        ],
+        "section-10-3-4-further": [
+            "section-10-3-4-further-serial-and-parallel-settings",
+            "section-1034-further--serial-and-parallel-settings",
+        ],
+        "section-10-3-5-further": [
+            "section-10-3-5-further-without-dead-time",
+            "section-1035-further--without-dead-time",
+        ],
+        "section-10-4-further": [
+            "section-10-4-further-how-good-the-relay-is-and-auto-tuning-with-a-model",
+            "section-104-further--how-good-the-relay-is-and-auto-tuning-with-a-model",
+        ],
+        "section-10-5-1-further": [
+            "section-10-5-1-further-settings-that-stay-while-the-process-changes",
+            "section-1051-further--settings-that-stay-while-the-process-changes",
+        ],
+        "example-10-3-further": [
+            "example-10-3-further-new-settings-for-a-changed-process",
+            "example-103-further--new-settings-for-a-changed-process",
+        ],
+        "section-10-5-3-further": ["section-10-5-3-further-gain-schedules", "section-1053-further--gain-schedules"],
+        "example-10-4-further": [
+            "example-10-4-further-a-tank-with-variable-flow",
+            "example-104-further--a-tank-with-variable-flow",
+        ],
+        "section-10-5-4-further": [
             "section-10-5-4",
             "equation-10-38",
             "check-haugen-section-10-5-4",
+            "section-10-5-4-further-an-adaptive-controller",
+            "section-1054-further--an-adaptive-controller",
         ],
     },
     "15_direct_synthesis": {"figure-12-1-block-diagram": ["check-seborg-figure-12-1-block-diagram"]},
