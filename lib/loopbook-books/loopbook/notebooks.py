@@ -257,20 +257,20 @@ def has_sliders(source: str) -> bool:
 
 
 def folded(cells: Iterable[NotebookNode]) -> list[NotebookNode]:
-    """The cells whose code a reader need not see: imports, sliders, checks, and what serves these alone.
+    """The cells whose code a reader need not see: imports, sliders, checks, drawn diagrams, and what serves these alone.
 
-    A cell serves checks alone if it shows nothing and all that it binds is used in folded cells only. What belongs to
+    A cell serves these alone if it shows nothing and all that it binds is used in folded cells only. What belongs to
     the argument is shown, and is not folded then.
 
     >>> from nbformat import v4
-    >>> codes = ["x = 1", "x + 1", "worst = max(x, 2)", "example.check(worst=worst)", "exercise('1.1').check(y=...)"]
+    >>> codes = ["x = 1", "x + 1", "worst = max(x, 2)", "example.check(worst=worst)", "draw.conveyor_belt()"]
     >>> [cell.source for cell in folded([v4.new_code_cell(code) for code in codes])]
-    ['worst = max(x, 2)', 'example.check(worst=worst)']
+    ['worst = max(x, 2)', 'example.check(worst=worst)', 'draw.conveyor_belt()']
     """
     code = [cell for cell in cells if cell.cell_type == "code"]
     bound, used = [bound_in(cell.source) for cell in code], [_used_in(cell.source) for cell in code]
     sources = [cell.source for cell in code]
-    hidden = {n for n, x in enumerate(sources) if _imports(x) or has_sliders(x) or _checks(x)}
+    hidden = {n for n, x in enumerate(sources) if _imports(x) or has_sliders(x) or _checks(x) or _draws(x)}
 
     def serves_hidden_cells(n: int) -> bool:
         if n in hidden or not bound[n] or code[n].outputs:
@@ -282,6 +282,14 @@ def folded(cells: Iterable[NotebookNode]) -> list[NotebookNode]:
     while more := {n for n in range(len(code)) if serves_hidden_cells(n)}:
         hidden |= more
     return [code[n] for n in sorted(hidden)]
+
+
+def _draws(source: str) -> bool:
+    """Whether a cell ends in a diagram, whose code is its layout."""
+    match _parsed(source).body:
+        case [*_, ast.Expr(ast.Call(ast.Attribute(ast.Name("draw" | "diagrams"))))]:
+            return True
+    return False
 
 
 def _walked(source: str) -> list[ast.AST]:
