@@ -15,6 +15,7 @@ from slugs import slug
 
 KINDS = ("example", "equation", "figure", "section", "table")
 NUMBER = re.compile(r"\(?\b((?:[A-Z]\.)?\d+(?:\.\d+)*)([a-z]?)\b\)?")
+BEHIND = re.compile(rf"\(((?:{'|'.join(KINDS)})s? (?=[(\dA-Z]).*)\)$", re.IGNORECASE)
 HEAD = re.compile(rf"({'|'.join(KINDS)})s? (?=[(\dA-Z])", re.IGNORECASE)
 FIGURE = "figure_places"  # of a cell's metadata: the names of its figure, and its title
 #: Places that are no more, and the section that stands for them: {chapter: {the section's name: the places}}.
@@ -40,7 +41,7 @@ MOVED = {
 
 
 def names_of(title):
-    """Return the places that a title claims: what the book calls it, number by number.
+    """Return the places that a title claims: what the book calls it, number by number, in front or in brackets behind.
 
     >>> names_of("Example 7.4 · Anti wind-up"), names_of("Example 3.1, further · The tank that runs over")
     (['example-7-4'], ['example-3-1-further'])
@@ -48,10 +49,11 @@ def names_of(title):
     (['equation-4', 'equation-5'], ['equation-7-89', 'equation-7-90', 'equation-7-91'])
     >>> names_of("Equations (12-5) and (12-6) · The controller"), names_of("Equations (5-50) to (5-52)")
     (['equation-12-5', 'equation-12-6'], ['equation-5-50', 'equation-5-51', 'equation-5-52'])
-    >>> names_of("How much damping?")
-    []
+    >>> names_of("How much damping?"), names_of("Two loops, one valve (Section 11.1)")
+    ([], ['section-11-1'])
     """
-    head = re.sub(r"(?<=\d)-(?=\d)", ".", title.partition(" · ")[0])  # Seborg writes 12-5
+    behind = BEHIND.search(title)
+    head = re.sub(r"(?<=\d)-(?=\d)", ".", behind[1] if behind else title.partition(" · ")[0])  # Seborg writes 12-5
     kind = HEAD.match(head)
     if not kind:
         return []
@@ -135,7 +137,8 @@ def name_sections(app, doctree):
         known |= set(names)
         section["ids"][:0] = [name for name in names if name not in section["ids"]]
         moved = MOVED.get(app.env.docname.removeprefix("chapters/"), {})
-        section["ids"] += [place for name in section["ids"] for place in moved.get(name, ())]
+        places = [place for name in section["ids"] for place in moved.get(name, ())]
+        section["ids"] += [place for place in places if place not in section["ids"]]
 
 
 def of_cell(cell):
