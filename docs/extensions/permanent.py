@@ -30,10 +30,47 @@ MOVED = {
             "check-haugen-section-10-5-4",
         ],
     },
+    "11_control_structures": {
+        "cascade-control-a-second-loop-inside-the-first-section-11-1": [
+            "section-11-1-cascade-control",
+            "section-111--cascade-control",
+        ],
+        "a-jacketed-tank-with-one-loop-and-with-two-example-11-1": [
+            "example-11-1-temperature-of-a-jacketed-tank",
+            "example-111--temperature-of-a-jacketed-tank",
+        ],
+    },
     "15_direct_synthesis": {"figure-12-1-block-diagram": ["check-seborg-figure-12-1-block-diagram"]},
     "16_tuning_relations": {
-        "table-12-3": ["figure-cell-102", "figure-cell-103"],
-        "figure-12-15-two-reaction-curves": ["check-seborg-figure-12-15"],
+        "settings-for-the-least-itae-table-12-3": [
+            "figure-cell-102",
+            "figure-cell-103",
+            "table-12-3-settings-for-the-least-itae",
+            "table-123--settings-for-the-least-itae",
+        ],
+        "one-step-of-the-valve-ziegler-and-nichols-beside-cohen-and-coon": [
+            "ziegler-and-nichols-beside-cohen-and-coon-slide"
+        ],
+        "both-rules-aim-at-a-decay-ratio-of-a-quarter": ["a-quarter-of-the-amplitude-slide"],
+        "a-long-lag-makes-one-rule-of-the-two-figure-12-15": [
+            "the-quarter-with-a-long-lag",
+            "check-seborg-figure-12-15",
+            "figure-12-15-two-reaction-curves",
+            "figure-1215--two-reaction-curves",
+        ],
+        "ise-iae-and-itae-what-each-integral-punishes": ["integral-criteria-slide"],
+        "continuous-cycling-settings-from-the-limit-of-stability-table-12-6-and-figure-12-12": [
+            "table-12-6-and-figure-12-12-continuous-cycling",
+            "table-126-and-figure-1212--continuous-cycling",
+        ],
+        "a-relay-finds-the-cycle-on-its-own-figure-12-14": [
+            "figure-12-14-a-relay-finds-the-cycle-on-its-own",
+            "figure-1214--a-relay-finds-the-cycle-on-its-own",
+        ],
+        "the-factor-4-is-critical-damping-and-a-smaller-one-recovers-faster-section-7-5-3": [
+            "section-7-5-3-what-the-factor-k-1-means",
+            "section-753--what-the-factor--means",
+        ],
     },
     "17_dead_time_compensation": {"section-1": ["figure-cell-020"]},
     "18_integral_criteria": {"more-than-one-dead-time": ["figure-cell-134"]},
