@@ -29,6 +29,106 @@ MOVED = {
             "check-haugen-section-10-5-4",
         ],
     },
+    "13_poles_and_zeros": {
+        "lag-integrator-and-pid-controller-three-transfer-functions": [
+            "transfer-function-three-that-come-back-again-and-again",
+        ],
+        "states-and-matrices-further-poles-are-eigenvalues": ["general-transfer-matrix-poles-are-eigenvalues"],
+        "where-a-step-response-begins-and-ends": ["initial-and-final-values-where-a-step-response-begins-and-ends"],
+        "first-order-a-response-settles-goes-on-or-grows": ["first-order-system-responses-g1-to-g6"],
+        "two-standard-forms-time-constants-or-poles-and-zeros": ["understanding-transfer-functions-two-standard-forms"],
+        "a-pole-sets-a-rate-a-zero-the-shape": ["poles-and-zeros-what-they-do-to-the-response"],
+        "two-paths-to-the-output-make-a-zero": ["zeros-two-paths-to-the-output"],
+        "an-overshoot-needs-a-zero-slower-than-the-slowest-lag": [
+            "figure-5-3-when-is-there-an-overshoot",
+            "figure-53--when-is-there-an-overshoot",
+        ],
+        "two-lags-in-series": ["two-first-order-in-series"],
+        "many-lags-in-series-the-more-the-flatter": [
+            "n-first-order-in-series-the-more-lags-the-flatter",
+            "figure-cell-087",
+        ],
+        "second-order-time-constant-and-damping": ["general-2nd-order-system-time-constant-and-damping"],
+        "second-order-further-the-cases-of-the-damping-and-a-table-of-transforms": [
+            "general-2nd-order-system-further-the-five-cases-of-the-damping",
+        ],
+        "seven-rows-of-a-table-worked-out-table-3-1": [
+            "table-3-1",
+            "table-3-1-seven-rows-worked-out",
+            "table-31--seven-rows-worked-out",
+        ],
+        "underdamped-responses-peak-overshoot-decay-and-period-equations-5-50-to-5-53": [
+            "equations-5-50-to-5-53-peak-overshoot-decay-and-period",
+            "figure-5-8-underdamped-responses",
+            "figure-58--underdamped-responses",
+        ],
+        "complex-poles-further-control-makes-oscillations-and-avoids-them": [
+            "complex-poles-in-practice-control-makes-oscillations-and-avoids-them",
+        ],
+        "a-closed-loop-direct-over-one-plus-loop": ["closed-loop-transfer-function-direct-over-one-plus-loop"],
+        "sensitivity-function-further-what-feedback-does-to-the-error": [
+            "sensitivity-function-s-what-feedback-does-to-the-error",
+        ],
+        "p-control-of-two-lags-less-offset-more-oscillations-closed-loop-example-1": [
+            "closed-loop-example-1-p-control-of-two-lags",
+        ],
+        "pi-control-of-a-lag-further-without-and-with-dead-time-closed-loop-example-2": [
+            "closed-loop-example-2-pi-control-of-a-lag",
+        ],
+        "with-a-dead-time-infinitely-many-poles": ["closed-loop-example-2-with-delay"],
+        "pi-control-of-a-level-a-smaller-gain-oscillates-more-closed-loop-example-3": [
+            "closed-loop-example-3-pi-control-of-a-level",
+        ],
+        "pi-control-of-a-level-further-its-period-and-a-dead-time": [
+            "closed-loop-responses-the-level-s-setpoint-and-disturbance",
+        ],
+        "vary-the-gain-vary-the-integral-time": ["pi-control-of-an-integrator-vary-the-gain-vary-the-integral-time"],
+        "with-a-dead-time-slow-oscillations-and-fast-ones": [
+            "pi-control-of-an-integrator-with-delay-slow-oscillations-and-fast-ones",
+        ],
+        "two-rules-for-two-kinds-of-oscillation": ["summary-pi-control-of-an-integrating-process"],
+        "what-poles-and-zeros-do-and-one-always": ["back-to-poles-and-zeros-what-they-do-and-one-always"],
+        "a-zero-in-the-left-half-plane-doubles-the-slope": [
+            "example-transfer-function-a-zero-in-the-left-half-plane",
+            "example-transfer-function--a-zero-in-the-left-half-plane",
+        ],
+        "a-process-that-needs-control-and-resists-it": [
+            "summary-poles-and-zeros-a-process-that-needs-control-and-resists-it",
+        ],
+    },
+    "14_model_approximation": {
+        "a-lag-much-shorter-than-another-is-nearly-a-dead-time": [
+            "slide-second-order-system-one-lag-much-larger-than-the-other",
+        ],
+        "skogestad-s-half-rule-half-of-the-second-lag-becomes-dead-time": ["slide-skogestad-s-half-rule"],
+        "two-lags-and-three-with-an-inverse-response-half-rule-examples-1-and-2": [
+            "half-rule-example-1-two-lags",
+            "half-rule-example-2-three-lags-and-an-inverse-response",
+            "figure-cell-074",
+        ],
+        "an-integrating-process-keeps-its-slope-and-loses-half-a-lag-half-rule-example-3": [
+            "half-rule-example-3-an-integrating-process",
+        ],
+        "an-integrating-process-further-the-proof": ["half-rule-example-3-further-the-proof"],
+        "zeros-in-the-left-half-plane-five-rules": ["slide-approximation-of-zeros-in-the-left-half-plane"],
+        "zeros-in-the-left-half-plane-further-what-happens-at-the-borders": [
+            "approximation-of-zeros-further-what-happens-at-the-borders",
+        ],
+        "a-slow-zero-beside-a-slow-pole-the-model-depends-on-the-loop-example-e3": [
+            "example-e3-a-slow-zero-beside-a-slow-pole",
+            "example-e3--a-slow-zero-beside-a-slow-pole",
+        ],
+        "a-dead-time-as-a-fraction-wrong-until-it-is-over": ["slide-approximations-of-time-delay"],
+        "a-dead-time-as-a-fraction-further-crossings-and-a-name": [
+            "approximations-of-time-delay-further-crossings-and-a-name",
+        ],
+        "a-dead-time-as-a-fraction-further-how-accurate-for-how-large-n": ["how-accurate-for-how-large-n"],
+        "a-model-from-data-least-squares-and-the-half-rule-beside-it": ["slide-obtaining-a-model-from-data"],
+        "a-model-from-data-further-is-one-second-too-long": [
+            "obtaining-a-model-from-data-further-is-one-second-too-long",
+        ],
+        "how-good-is-a-reduced-model-its-loop-nearly-keeps-what-it-promised": ["how-good-is-a-reduced-model"],
+    },
     "15_direct_synthesis": {"figure-12-1-block-diagram": ["check-seborg-figure-12-1-block-diagram"]},
     "16_tuning_relations": {
         "table-12-3": ["figure-cell-102", "figure-cell-103"],
