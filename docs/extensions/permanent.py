@@ -36,7 +36,9 @@ MOVED = {
         "states-and-matrices-further-poles-are-eigenvalues": ["general-transfer-matrix-poles-are-eigenvalues"],
         "where-a-step-response-begins-and-ends": ["initial-and-final-values-where-a-step-response-begins-and-ends"],
         "first-order-a-response-settles-goes-on-or-grows": ["first-order-system-responses-g1-to-g6"],
-        "two-standard-forms-time-constants-or-poles-and-zeros": ["understanding-transfer-functions-two-standard-forms"],
+        slug("Two standard forms: time constants, or poles and zeros"): [
+            "understanding-transfer-functions-two-standard-forms"
+        ],
         "a-pole-sets-a-rate-a-zero-the-shape": ["poles-and-zeros-what-they-do-to-the-response"],
         "two-paths-to-the-output-make-a-zero": ["zeros-two-paths-to-the-output"],
         "an-overshoot-needs-a-zero-slower-than-the-slowest-lag": [
@@ -48,7 +50,7 @@ MOVED = {
             "n-first-order-in-series-the-more-lags-the-flatter",
             "figure-cell-087",
         ],
-        "second-order-time-constant-and-damping": ["general-2nd-order-system-time-constant-and-damping"],
+        slug("Second order: time constant and damping"): [slug("General 2nd order system: time constant and damping")],
         "second-order-further-the-cases-of-the-damping-and-a-table-of-transforms": [
             "general-2nd-order-system-further-the-five-cases-of-the-damping",
         ],
