@@ -37,7 +37,7 @@ def listed():
             question = exercise_forms.sheet(number).question
             asked = dict.fromkeys(kind.maker.replace("_", " ") for kind in question.key.values())
             link = f"[{number} {one.title}](chapters/{pages[number]}.ipynb#exercise-{slugs.slug(number)})"
-            yield f"| {link} | {', '.join(asked)} | {one.points:g} | {', '.join(places(question))} |"
+            yield f"| {link} | {', '.join(asked)} | {one.points:g} | {', '.join(places(question)) or '–'} |"
 
 
 class ExerciseList(SphinxDirective):
