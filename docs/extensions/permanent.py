@@ -130,7 +130,7 @@ def name_sections(app, doctree):
         known |= set(names)
         section["ids"][:0] = [name for name in names if name not in section["ids"]]
         moved = MOVED.get(app.env.docname.removeprefix("chapters/"), {})
-        places = [place for name in section["ids"] for old in moved.get(name, ()) for place in addresses(old)]
+        places = dict.fromkeys(one for name in section["ids"] for old in moved.get(name, ()) for one in addresses(old))
         section["ids"] += [place for place in places if place not in section["ids"]]
 
 
