@@ -46,6 +46,12 @@ def test_every_place_is_promised(book):
     assert not any(new.values()), (said, {name: places for name, places in new.items() if places})
 
 
+def test_what_stands_for_an_old_place_is_there(book):
+    for chapter, moved in permanent.MOVED.items():
+        page = (book / "chapters" / f"{chapter}.html").read_text(encoding="utf-8")
+        assert [name for name in moved if f' id="{name}"' not in page] == [], chapter
+
+
 def test_what_the_ledger_names_has_its_place(book):
     """An example, a numbered equation, a table: the chapter that computes it has its address."""
     found = present(book)
