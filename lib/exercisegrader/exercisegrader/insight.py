@@ -13,7 +13,7 @@ import json
 import math
 import re
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -46,7 +46,7 @@ FEWEST, CHANCE = 3, 0.01
 #: What a slip gives with the numbers of so many others is compared, too.
 OTHERS = 16
 #: So many slips of a question are tried, for so long of the processor's time; the plainer ones come first.
-MOST, SECONDS = 40_000, 20
+MOST, SECONDS = 80_000, 20
 #: Around the value of a slip, within this factor, other answers tell how dense they lie there.
 _AROUND = 1.5
 #: A question is harder for some numbers where chance says so with this probability.
@@ -295,7 +295,8 @@ def _mined(number, name, wrong, everybody, chance):
     if name not in columns.numbers or not np.allclose(columns.right[name][: len(wrong)], key, rtol=1e-9):
         return
     halves, tried, found, began = half_units(numbers), set(), [], time.process_time()
-    for count, slip in enumerate(itertools.islice(slips(exercise, name, columns.numbers), MOST)):
+    factors = [text for text, times in Counter(f"{ratio:.2g}" for ratio in numbers / key).items() if times >= FEWEST]
+    for count, slip in enumerate(itertools.islice(slips(exercise, name, columns.numbers, factors), MOST)):
         if count % 50 == 0 and time.process_time() - began > SECONDS:
             break
         values = columns.by(slip, name)

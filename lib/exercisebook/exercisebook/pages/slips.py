@@ -24,13 +24,14 @@ _WHOLES = ("1", "100", "90", "180")
 Slip = Mapping[str, Formula]
 
 
-def slips(page: Page, name: str, numbers: Sequence[str] = ()) -> Iterator[Slip]:
+def slips(page: Page, name: str, numbers: Sequence[str] = (), factors: Sequence[str] = ()) -> Iterator[Slip]:
     """Yield the slips that may change an asked quantity, the plainer ones first; many have the same value.
 
     Arguments:
         page: the exercise.
         name: of the asked quantity.
         numbers: the names of the quantities that are numbers; those of the page if not given.
+        factors: by which it may be off besides the usual ones.
 
     >>> from exercisebook.pages import page
     >>> text = "# 1 Fall (1 point)\\nFrom {h}?\\n## Given\\n| n | v | u |\\n|---|---|---|\\n| h | 1 … 9 | m |\\n"
@@ -54,6 +55,7 @@ def slips(page: Page, name: str, numbers: Sequence[str] = ()) -> Iterator[Slip]:
     for one, other in itertools.combinations(graph.givens, 2):
         if page.units[one] == page.units[other]:
             yield made(one, ast.Name(other)) | made(other, ast.Name(one))
+    yield from (made(name, ast.BinOp(_tree(one), ast.Mult(), ast.Name(name))) for one in factors)
     constants = [*map(_tree, (*_FACTORS, *_WHOLES))]
     quantities = {of: [ast.Name(one) for one in numbers if one != of] for of in above if of in numbers}
     for of, others in quantities.items():
@@ -64,8 +66,10 @@ def slips(page: Page, name: str, numbers: Sequence[str] = ()) -> Iterator[Slip]:
     for of, tree in formulas.items():
         once = _changed(tree, lambda node: _others(node, {}))
         yield from (made(of, other) for one in once for other in _changed(one, lambda node: _others(node, {})))
-    for of, others in quantities.items():
-        yield from (made(of, tree) for tree in _together(_together(others, others), [*constants, *others]))
+    for third in ([ast.Constant(2)], [*map(ast.Name, numbers), *constants]):
+        for of, others in quantities.items():
+            pairs = (two for pair in itertools.combinations(others, 2) for two in _together(pair[:1], pair[1:]))
+            yield from (made(of, tree) for tree in _together(pairs, third))
 
 
 def _instead(own, others):
