@@ -18,6 +18,7 @@ from exercisegrader.inside import answer_sheet
 from exercisegrader.inside.plain import plain
 from exercisegrader.release import as_text, notebook
 from exercisegrader.reports import pages
+from exercisegrader.reports.wording import answer_in_words
 from loopbook import notebooks, s
 from loopbook.deadtime import System
 from loopbook.exercises import bank
@@ -171,3 +172,17 @@ def test_every_formula_in_the_sentences_on_mistakes_is_mathml():
     for formula in formulas:
         assert pages.sentence(formula).startswith("<math"), formula
         assert "\\" not in pages.sentence(formula), formula
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"Kp": 2, "Ti": "inf", "Td": 0, "Tf": 0, "form": "parallel"}, "Kp = 2"),
+        ({"Kp": "1/3", "Ti": "2 min", "Td": 1, "form": "serial"}, "Kp = 0.33333333, Ti = 2 min, Td = 1, serial form"),
+        ({"Kp": "1/0", "Ti": ["</cod"], "form": {}}, "Kp = 1/0, Ti = [</cod]"),
+        ({"Kp": 2, "form": "parallel", "more": 1}, "{Kp: 2, form: parallel, more: 1}"),
+        ({"Kp": "9" * 400 + "/7", "form": ""}, "Kp = 9999"),
+    ],
+)
+def test_a_controller_in_words(given, says):
+    assert answer_in_words(given).startswith(says)

@@ -1,12 +1,16 @@
 """Exercises as pages: what is read, what follows from the formulas, and what is said of a page that is wrong."""
 
+import itertools
+import math
 import re
 
 import pytest
 
 from exercisebook.judging import RIGHT, WRONG
 from exercisebook.pages import page
+from exercisebook.pages.columns import Columns
 from exercisebook.pages.parts import PageError
+from exercisebook.pages.slips import slips
 from exercisebook.parameters import between
 
 PAGE = """\
@@ -125,6 +129,21 @@ def test_what_follows_from_a_mistake_follows_and_comes_after_those_of_the_quanti
     assert [float(value) for _, value in late] == pytest.approx([0.5, 2 * 2 * 1000 / 4 / 60, 1000 / 4 / 60])
     assert ("Half of a half is a quarter.", pytest.approx(2 * 1000 / 4 / 60)) in question.mistakes["half"]
     assert "The height is missing." in [says for says, _ in question.mistakes["half"]]
+
+
+def test_what_follows_from_slips_in_many_variants_at_once_is_what_follows_in_each():
+    text = PAGE.replace("late  = V/q ", "f = 2 if side == 'left' else 3\nlate  = other(V)*f/q ")
+    one = made(text, other=lambda V: V if V > 0 else [])
+    variants = [one.question(f"s{k}").values for k in range(5)]
+    columns = Columns(one, variants)
+    assert columns.numbers == ["A", "h", "q", "V", "share", "f", "late", "half"]
+    for slip in itertools.islice(slips(one, "half", columns.numbers), 0, None, 150):
+        for values, found in zip(variants, columns.by(slip, "half"), strict=True):
+            try:
+                follows = one.following(values, slip, "half").key
+            except ValueError:
+                follows = math.nan
+            assert found == pytest.approx(follows, rel=1e-9, nan_ok=True), slip
 
 
 def test_a_variant_in_which_a_mistake_is_right_is_not_drawn():

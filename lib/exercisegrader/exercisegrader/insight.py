@@ -7,32 +7,33 @@ own, so that what a slip gives with the numbers of the others says what chance d
 
 from __future__ import annotations
 
-import contextlib
 import datetime
+import itertools
 import json
 import math
 import re
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy import stats
 
 from exercisebook.diagnoses.background import follows
-from exercisebook.diagnoses.numbers import is_recognised, rounded
+from exercisebook.diagnoses.numbers import WIDEST, are_recognised, half_units, is_recognised, rounded
 from exercisebook.errors import ExerciseError
 from exercisebook.forms import Sheet
 from exercisebook.grammar import Unreadable
 from exercisebook.judging import MISTAKE, WAITING, WRONG, harmless
 from exercisebook.kinds import Number
+from exercisebook.pages.columns import Columns
 from exercisebook.pages.page import Page
 from exercisebook.pages.slips import line, slips
 from exercisebook.parameters import written
 from exercisebook.question import Question
-from exercisebook.timeout import limited
 from exercisegrader import GradingError, tables
 from exercisegrader.assignment import Assignment
 from exercisegrader.judge import judged
@@ -44,12 +45,14 @@ from exercisegrader.student import Student, in_short
 FEWEST, CHANCE = 3, 0.01
 #: What a slip gives with the numbers of so many others is compared, too.
 OTHERS = 16
-#: The slips of a question are tried for so long, of the processor's time; the plainer ones come first.
-SECONDS = 20
+#: So many slips of a question are tried, for so long of the processor's time; the plainer ones come first.
+MOST, SECONDS = 80_000, 20
 #: Around the value of a slip, within this factor, other answers tell how dense they lie there.
 _AROUND = 1.5
-#: A question is harder for some numbers where chance says so with this probability, in so many shuffles.
-HARDER, SHUFFLES = 0.05, 4000
+#: A question is harder for some numbers where chance says so with this probability.
+HARDER = 0.05
+#: Of fewer students nothing is told but the mean.
+FEW = 10
 #: A larger file is no progress that a page has saved.
 _LARGEST = 1_000_000
 _FOLLOWS = follows("").partition(" for ,")[0]
@@ -129,7 +132,7 @@ class Item:
     Attributes:
         number, name: of exercise and quantity.
         parts: {student: part of its points}.
-        discrimination: the correlation with all the rest; None where nothing differs.
+        discrimination: the correlation with all the rest; None for too few, or where nothing differs.
         says: for which numbers it is harder, in sentences.
     """
 
@@ -143,6 +146,11 @@ class Item:
     def mean(self) -> float:
         """The mean part of its points."""
         return float(np.mean([*self.parts.values()]))
+
+    @property
+    def is_few(self) -> bool:
+        """Whether there are too few answers, or too few wrong ones, to tell more than the mean."""
+        return len(self.parts) < FEW or sum(part < 1 for part in self.parts.values()) < FEWEST
 
 
 def items(attempts: Sequence[Attempt]) -> list[Item]:
@@ -162,7 +170,9 @@ def items(attempts: Sequence[Attempt]) -> list[Item]:
     for item in found:
         own = np.array([*item.parts.values()])
         rest = np.array([sums[student] for student in item.parts]) - own
-        if len(own) > 2 and np.ptp(own) and np.ptp(rest):
+        if item.is_few:
+            continue
+        if np.ptp(own) and np.ptp(rest):
             item.discrimination = float(np.corrcoef(own, rest)[0, 1])
         values = [questions[student, item.number].values for student in item.parts]
         for name in values[0]:
@@ -172,28 +182,19 @@ def items(attempts: Sequence[Attempt]) -> list[Item]:
 
 def _harder(name: str, values: Sequence[Any], parts: np.ndarray, chance: float) -> Iterator[str]:
     """Yield for which values of a parameter a question is harder, where it is so by more than chance."""
+    groups: dict[str, list[float]] = {}
     if all(isinstance(one, str) for one in values):
-        groups = np.array([sorted(set(values)).index(one) for one in values])
-        words = [f"'{one}'" for one in sorted(set(values))]
+        words = [f"'{one}'" for one in values]
     elif any(one is None or isinstance(one, str) for one in values):
         return
     else:
-        amounts = np.array([float(one) for one in values])
-        middle = float(np.median(amounts))
-        groups, words = (amounts > middle).astype(int), [f"up to {middle:g}", f"above {middle:g}"]
-    counts = np.bincount(groups, minlength=len(words))
-    if not np.ptp(parts) or np.sum(counts > 0) < 2:
-        return
-
-    def apart(shuffled):
-        sums = np.bincount(groups, shuffled, len(words))
-        return np.sum(sums[counts > 0] ** 2 / counts[counts > 0])
-
-    random, own = np.random.default_rng(0), apart(parts)
-    p = (1 + sum(apart(random.permutation(parts)) >= own - 1e-9 for _ in range(SHUFFLES))) / (1 + SHUFFLES)
-    if p <= max(chance, 2 / SHUFFLES):
-        means = np.bincount(groups, parts, len(words)) / np.maximum(counts, 1)
-        each = [f"{100 * mean:.0f} % for {word} ({n})" for mean, word, n in zip(means, words, counts, strict=True) if n]
+        middle = float(np.median([float(one) for one in values]))
+        words = [f"above {middle:g}" if one > middle else f"up to {middle:g}" for one in values]
+    for word, part in zip(words, parts, strict=True):
+        groups.setdefault(word, []).append(part)
+    if len(groups) > 1 and np.ptp(parts) and stats.kruskal(*groups.values()).pvalue <= chance:
+        shown = sorted(groups.items(), reverse=True)
+        each = [f"{100 * np.mean(of):.0f} % for {word} ({len(of)})" for word, of in shown]
         yield f"differs with {name}: {', '.join(each)}"
 
 
@@ -286,59 +287,50 @@ def _unexplained(attempt: Attempt) -> Iterator[tuple[str, float]]:
 
 def _mined(number, name, wrong, everybody, chance):
     """The mistakes in one quantity, the surest first, each without the answers that those before it explain."""
-    exercise, left = wrong[0][0].question.exercise, list(range(len(wrong)))
-    known: dict[tuple[str, ...], tuple[Any, list[float]]] = {}
-    began = time.process_time()
-    for slip in slips(exercise, name):
-        if time.process_time() - began > SECONDS:
-            break
-        with contextlib.suppress(TimeoutError):  # with wrong values a function may search without end
-            values = limited(SECONDS / 10, lambda slip=slip: [_value(slip, name, one.question) for one, _ in wrong])
-            known.setdefault(tuple(f"{value:.5g}" for value in values), (slip, values))
-    if not known:
-        return
+    exercise, kinds = wrong[0][0].question.exercise, [one.question.key[name] for one, _ in wrong]
     others = everybody[:: max(1, len(everybody) // OTHERS)]
+    columns = Columns(exercise, [one.values for one in (*(one.question for one, _ in wrong), *others)])
+    key, numbers = np.array([kind.key for kind in kinds]), np.array([number for _, number in wrong])
+    within = np.maximum([kind.within for kind in kinds], WIDEST) * np.abs(key)
+    if name not in columns.numbers or not np.allclose(columns.right[name][: len(wrong)], key, rtol=1e-9):
+        return
+    halves, tried, found, began = half_units(numbers), set(), [], time.process_time()
+    factors = [text for text, times in Counter(f"{ratio:.2g}" for ratio in numbers / key).items() if times >= FEWEST]
+    for count, slip in enumerate(itertools.islice(slips(exercise, name, columns.numbers, factors), MOST)):
+        if count % 50 == 0 and time.process_time() - began > SECONDS:
+            break
+        values = columns.by(slip, name)
+        own = np.where(np.abs(values[: len(wrong)] - key) > within, values[: len(wrong)], math.nan)
+        with np.errstate(over="ignore"):
+            tried.add(own.astype(np.float32).tobytes())
+        hits = are_recognised(numbers, halves, own)
+        if np.count_nonzero(hits) >= FEWEST and _are_several(numbers[hits]):
+            found.append((slip, hits, _by_chance(numbers, halves, own, values[len(wrong) :], hits)))
+    left = np.ones(len(wrong), bool)
     while True:
-        best = (chance / len(known), None, [])
-        for slip, values in known.values():
-            hits = [k for k in left if is_recognised(wrong[k][1], values[k])]
-            if _are_several(wrong[k][1] for k in hits):
-                by_chance = _by_chance(slip, name, [(wrong[k][1], values[k]) for k in left], hits, others)
-                p = _tail(len(left), len(hits), by_chance)
-                if p < best[0]:
-                    best = (p, slip, hits)
-        _, slip, hits = best
-        if slip is None:
+        sure = [
+            (stats.binom.sf(np.sum(hits & left) - 1, np.sum(left), by_chance), place)
+            for place, (_, hits, by_chance) in enumerate(found)
+            if _are_several(numbers[hits & left])
+        ]
+        p, place = min(sure, default=(1, None))
+        if p > chance / len(tried):
             return
-        numbers = {wrong[k][0].student: wrong[k][1] for k in hits}
-        yield Proposal(number, name, line(slip), numbers, len(left))
-        left = [k for k in left if k not in hits]
+        slip, hits, _ = found[place]
+        explained = {one.student: number for (one, number), is_hit in zip(wrong, hits & left, strict=True) if is_hit}
+        yield Proposal(number, name, line(slip), explained, int(np.sum(left)))
+        left &= ~hits
 
 
-def _value(slip, name, question):
-    """What an asked number is by a slip; NaN where it is none, or right."""
-    try:
-        with np.errstate(all="ignore"):
-            found = question.exercise.following(question.values, slip, name)
-        return math.nan if not found or question.key[name].agrees(found.key) else float(found.key)
-    except Exception:  # the functions of an author are for right values
-        return math.nan
-
-
-def _by_chance(slip, name, pairs, hits, others):
+def _by_chance(numbers, halves, own, others, hits):
     """How likely a wrong number is the value of a slip by chance: of the others' numbers, and by those around it."""
-    values = [value for value in (_value(slip, name, one) for one in others) if math.isfinite(value)]
-    strange = [(number, value) for number, own in pairs for value in values if abs(value - own) > 0.01 * abs(own)]
-    of_others = (0.5 + sum(is_recognised(*one) for one in strange)) / (1 + len(strange))
-    ratios = [abs(math.log(number / own)) for number, own in pairs if number * own > 0]
-    near = sum(ratio < math.log(_AROUND) for ratio in ratios) - len(hits)
-    width = 0.006 / math.log(_AROUND)
-    return min(1.0, max(of_others, (0.5 + max(near, 0)) / len(pairs) * width))
-
-
-def _tail(n, k, p):
-    """The probability that so many of n are met by chance, or more."""
-    return sum(math.comb(n, i) * p**i * (1 - p) ** (n - i) for i in range(k, n + 1))
+    strange = np.abs(others - own[:, None]) > 0.01 * np.abs(own[:, None])
+    of_others = (0.5 + np.sum(are_recognised(numbers[:, None], halves[:, None], others) & strange)) / (
+        1 + np.sum(strange)
+    )
+    with np.errstate(all="ignore"):
+        near = np.sum(np.abs(np.log(numbers / own)) < math.log(_AROUND)) - np.sum(hits)
+    return min(1.0, max(of_others, (0.5 + max(near, 0)) / len(numbers) * WIDEST / math.log(_AROUND)))
 
 
 # ------------------------------------------------------------------------------------------------------------ whose
@@ -389,10 +381,10 @@ def report(
         own = [one for one in attempts if one.judged.number == item.number]
         tries, hints = (f"{np.mean(numbers):.2g}" if any(numbers) else ""
                         for numbers in ([one.attempts for one in own], [one.hints for one in own]))  # fmt: skip
-        with_rest = "" if item.discrimination is None else f"{item.discrimination:.2f}"
+        with_rest = f"{item.discrimination:.2f}" if item.discrimination is not None else "too few" * item.is_few
         share, remark = f"{item.mean:.2f}", "; ".join(item.says)
         rows.append([item.number, item.name, str(len(item.parts)), share, with_rest, tries, hints, remark])
-        lines.append(f"{f'{item.number} {item.name}':24} {100 * item.mean:3.0f} %  {with_rest:>5}  {remark}".rstrip())
+        lines.append(f"{f'{item.number} {item.name}':24} {100 * item.mean:3.0f} %  {with_rest:>7}  {remark}".rstrip())
     for day, count, mean in days:
         rows.append(["", "", str(count), f"{mean:.2f}", "", "", "", f"handed in on {day}"])
     if days:

@@ -18,14 +18,12 @@ from exercisegrader.reports.findings import Findings
 from exercisegrader.reports.outputs import registered
 from exercisegrader.reports.outputs.feedback import feedback
 from exercisegrader.reports.outputs.summary import summary
-from exercisegrader.reports.wording import answer_in_words
 from exercisegrader.results import CellError, Look
 from small_class import (
     ADA,
     BOB,
     CLASS,
     EVE,
-    HOSTILE,
     MISSING,
     NAMED,
     RESULTS,
@@ -372,20 +370,6 @@ def test_the_words_of_a_verdict_are_those_of_its_status():
     text = read(summary(grades()))
     assert statuses == {RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN}
     assert all(status in text for status in statuses)
-
-
-@pytest.mark.parametrize(
-    ("settings", "says"),
-    [
-        ({"Kp": 2, "Ti": "inf", "Td": 0, "Tf": 0, "form": "parallel"}, "Kp = 2"),
-        ({"Kp": "1/3", "Ti": "2 min", "Td": 1, "form": "serial"}, "Kp = 0.33333333, Ti = 2 min, Td = 1, serial form"),
-        ({"Kp": "1/0", "Ti": [HOSTILE[:5]], "form": {}}, "Kp = 1/0, Ti = [</cod]"),
-        ({"Kp": 2, "form": "parallel", "more": 1}, "{Kp: 2, form: parallel, more: 1}"),
-        ({"Kp": "9" * 400 + "/7", "form": ""}, "Kp = 9999"),
-    ],
-)
-def test_a_controller_in_words(settings, says):
-    assert answer_in_words(settings).startswith(says)
 
 
 def test_the_hardest_exercise_comes_first_and_one_that_waits_last():

@@ -12,9 +12,9 @@ from assignments import HEAD, ONE, students
 from exercisegrader import GradingError
 from exercisegrader.assignment import Assignment
 from exercisegrader.grade import grade
-from exercisegrader.paper import sheets, typed
+from exercisegrader.paper import sheets
 from exercisegrader.release import asked
-from exercisegrader.released import Released, texts
+from exercisegrader.released import Released
 
 CLASS = students("Ada Byron", "Bob <Bode>", "Eve")
 SOURCE = HEAD.replace("import *", "import *\nCREDIT = Credit(unit=50)") + (
@@ -43,7 +43,7 @@ def rows_of(path):
     return list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
 
 
-def test_sheets_have_own_numbers_a_code_and_nothing_of_the_key(given, tmp_path):
+def test_sheets_have_own_numbers_and_nothing_of_the_key(given, tmp_path):
     done = sheets.release(given, CLASS, tmp_path / "papers")
     assert [path.relative_to(tmp_path).as_posix() for path in done.paths] == [
         f"papers/s{1001 + k}/times.pdf" for k in range(3)
@@ -51,7 +51,7 @@ def test_sheets_have_own_numbers_a_code_and_nothing_of_the_key(given, tmp_path):
     for student, path in zip(CLASS, done.paths, strict=True):
         text, own = path.read_text(encoding="utf-8"), numbers(given, student.id)
         assert f"x is {own['1']['x']} m, T is {own['1']['T']} s" in text.replace("\N{NO-BREAK SPACE}", " ")
-        assert typed.code(given, student.id, own) in text
+        assert f"&lt;code&gt;{student.id}&lt;/code&gt; · times" in text
         assert text.count("class='line'") == 2
         assert text.count("class='line box'") == 1
         assert not re.search(r"what to look for|That is once", text)
@@ -62,20 +62,19 @@ def test_sheets_have_own_numbers_a_code_and_nothing_of_the_key(given, tmp_path):
         assert f"<td>{kind.solution}</td>" in key
     assert (done.beside / "times_all.pdf").read_text(encoding="utf-8").count("<article") == 3
     assert rows_of(done.beside / "times_answers.csv")[:2] == [
-        ["id", "name", "code", "1 y", "1 t"], ["s1001", "Ada Byron", "", "", ""]
+        ["id", "name", "1 y", "1 t"], ["s1001", "Ada Byron", "", ""]
     ]  # fmt: skip
-    assert len({typed.code(given, one.id, numbers(given, one.id)) for one in CLASS}) == 3
 
 
 def test_released_again_numbers_and_what_was_typed_stay(given, tmp_path):
     table = sheets.release(given, CLASS[:2], tmp_path / "papers").beside / "times_answers.csv"
-    table.write_text(table.read_text(encoding="utf-8").replace("Byron,,,", "Byron,,7,"), encoding="utf-8")
+    table.write_text(table.read_text(encoding="utf-8").replace("Byron,,", "Byron,7,"), encoding="utf-8")
     before = numbers(given, "s1001")
     mended = Assignment.of(SOURCE.replace("between(1, 9,", "between(50, 90,"), "times", given.path)
     assert any("other ranges" in one for one in sheets.release(mended, CLASS, tmp_path / "papers").remarks)
     assert numbers(mended, "s1001") == before
-    assert [row[:4] for row in rows_of(table)[1:]] == [
-        ["s1001", "Ada Byron", "", "7"], ["s1002", "Bob <Bode>", "", ""], ["s1003", "Eve", "", ""]
+    assert [row[:3] for row in rows_of(table)[1:]] == [
+        ["s1001", "Ada Byron", "7"], ["s1002", "Bob <Bode>", ""], ["s1003", "Eve", ""]
     ]  # fmt: skip
 
 
@@ -83,12 +82,11 @@ def test_what_is_typed_is_judged_as_in_a_notebook(given, tmp_path):
     table = sheets.release(given, CLASS, tmp_path / "papers").beside / "times_answers.csv"
     own = {one.id: {name: float(text) for name, text in numbers(given, one.id)["1"].items()} for one in CLASS}
     ada, bob = own["s1001"], own["s1002"]
-    code = typed.code(given, "s1002", numbers(given, "s1002")).lower()
     lines = [
-        "1 t;id;code;1 y",
-        f"{ada['T'] / 60:.6g} min;S1001;;{2 * ada['x']:g}".replace(".", ","),
-        f"{bob['T'] / 60:.6g};s1002;{code};{bob['x']:g}",
-        ";s1003;;",
+        "1 t;id;1 y",
+        f"{ada['T'] / 60:.6g} min;S1001;{2 * ada['x']:g}".replace(".", ","),
+        f"{bob['T'] / 60:.6g};s1002;{bob['x']:g}",
+        ";s1003;",
     ]
     table.write_text("\n".join(lines), encoding="utf-8")
     done = grade(given, CLASS, table, tmp_path / "grades")
@@ -116,7 +114,6 @@ def test_what_is_typed_is_judged_as_in_a_notebook(given, tmp_path):
             "id,1 y,1 t\ns9,1,2\n,1,2\ns1001,1,2\ns1001,3,4",
             ["no student 's9'", "without an id", "a row already, line 4"],
         ),
-        ("id,code,1 y,1 t\ns1001,AAAA,1,2", ["the code is 'AAAA', and the sheets of s1001 have "]),
         ("id,1 y\ns1001,1", ["there is no column '1 t'"]),
         ("id,1 y,1 t\ns1003,1,2", ["answers of s1003, to whom nothing was released"]),
         ("id,1 y,1 t,1 T\ns1001,1", ["nothing is asked as '1 T'"]),
@@ -144,9 +141,9 @@ def test_what_paper_cannot_hold_is_said(monkeypatch):
         questions = {"1": asked(assignment, "s1001", "1")}
         if is_refused:
             with pytest.raises(GradingError, match=r"no sheet holds .* exercise .*\(41 of t\): expected at most 40"):
-                sheets.sheets(assignment, CLASS[0], questions, "CODE")
+                sheets.sheets(assignment, CLASS[0], questions)
         else:
-            assert "<td>39</td>" in sheets.sheets(assignment, CLASS[0], questions, "CODE")
+            assert "<td>39</td>" in sheets.sheets(assignment, CLASS[0], questions)
     monkeypatch.setattr(sheets, "BROWSERS", ())
     with pytest.raises(GradingError, match="no browser here to print with: install Chromium"):
         sheets.browser()
@@ -159,9 +156,8 @@ def test_a_browser_cuts_into_sheets(given, monkeypatch):
     long = replace(given, introduction="\n\n".join(["A long introduction."] * 60))
     parts = []
     for one in CLASS[:2]:
-        questions = {"1": asked(given, one.id, "1")}
-        parts.append(sheets.sheets(long, one, questions, typed.code(given, one.id, {"1": texts(questions["1"])})))
+        parts.append(sheets.sheets(long, one, {"1": asked(given, one.id, "1")}))
     pages = pypdf.PdfReader(io.BytesIO(sheets.printed(sheets.page("Times", parts), sheets.browser()))).pages
-    feet = [re.search(r"(s100\d) · times · \w{4}\s*(sheet.+|this.+)", page.extract_text()).groups() for page in pages]
+    feet = [re.search(r"(s100\d) · times\s*(sheet.+|this.+)", page.extract_text()).groups() for page in pages]
     ends = ["sheet 1 of 3", "sheet 2 of 3", "sheet 3 of 3", "this side is empty"]
     assert feet == [(student, end) for student in ("s1001", "s1002") for end in ends]

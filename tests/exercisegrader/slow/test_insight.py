@@ -113,6 +113,7 @@ def test_how_hard_a_question_is_and_for_whom():
     assert [(day, count) for day, count, _ in days] == [("2026-11-01", 15), ("2026-11-02", 15)]
     text, table = insight.report(attempts, days, [insight.Proposal("5", "P", "P = U*R", {"s1": 2.0}, 4)])
     assert "- `P = U*R` …\n  (5 P: 1 of 4 wrong, s1 2)" in text
+    assert insight.report(attempts[:6], [], [])[0].count("too few") == 2  # of three students nothing is told
     rows = list(csv.DictReader(io.StringIO(table.lstrip("\ufeff"))))
     assert [row["remark"] for row in rows][2:] == [
         "handed in on 2026-11-01", "handed in on 2026-11-02", "propose: P = U*R"

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from decimal import Decimal
+
+import numpy as np
 
 from exercisebook import units
 from exercisebook.diagnoses.background import Amount, Background, follows
@@ -164,6 +166,27 @@ def is_recognised(
         if digits < ENOUGH_DIGITS:
             within = 0 if is_rarest else EXACTLY
     return within > 0 and abs(answer - wrong) <= within * abs(wrong)
+
+
+def are_recognised(answers: np.ndarray, halves: np.ndarray, wrong: np.ndarray) -> np.ndarray:
+    """Which answers are the wrong values in the same places, as `is_recognised` says it of one.
+
+    Arguments:
+        answers: numbers.
+        halves: of each, half a unit of its last digit.
+        wrong: values, NaN where there is none.
+
+    >>> answers = np.array([0.67, 0.66, 0.7, 1])
+    >>> are_recognised(answers, half_units(answers), np.array([2 / 3, 2 / 3, 2 / 3, np.nan])).tolist()
+    [True, False, False, False]
+    """
+    size = np.abs(wrong)
+    return (np.abs(answers - wrong) <= np.clip(halves, NARROWEST * size, WIDEST * size)) & (wrong != 0)
+
+
+def half_units(answers: Iterable[float]) -> np.ndarray:
+    """Half a unit of the last digit of each number."""
+    return np.array([_digits(answer)[1] for answer in answers])
 
 
 def _digits(answer):

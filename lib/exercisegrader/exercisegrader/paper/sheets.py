@@ -84,22 +84,19 @@ def release(
     students, remarks = before.identified(students)
     if before.path:
         remarks += before.differences(assignment, [one for one in students if one.id in before.holders])
-    questions, codes, articles = {}, {}, {}
+    questions, articles = {}, {}
     for one in students:
         kept = before.numbers(one.id)
         own = {n: asked(assignment, one.id, n, kept.get(n)) for n in assignment.exercises}
         record = record.with_release(one, {n: texts(question) for n, question in own.items()})
-        questions[one.id], codes[one.id] = own, typed.code(assignment, one.id, record.numbers(one.id))
-        articles[one.id] = sheets(assignment, one, own, codes[one.id])
+        questions[one.id], articles[one.id] = own, sheets(assignment, one, own)
     beside = folder.resolve().with_name(f"{folder.resolve().name}_for_instructor")
     table = beside / f"{assignment.name}_answers.csv"
     rows = typed.template(table, typed.columns(questions[students[0].id]), students)
     title = escaped(assignment.title)
     wanted = {folder / one.id / f"{assignment.name}.pdf": page(title, [articles[one.id]]) for one in students}
     wanted[beside / f"{assignment.name}_all.pdf"] = page(title, articles.values())
-    wanted[beside / f"{assignment.name}_key.pdf"] = page(
-        f"{title} · key", [key(assignment, students, questions, codes)]
-    )
+    wanted[beside / f"{assignment.name}_key.pdf"] = page(f"{title} · key", [key(assignment, students, questions)])
     if assignment.record:
         record.write(assignment.record, assignment.secret)
     files.write(table, rows)
@@ -123,13 +120,13 @@ def page(title: str, parts: Iterable[str]) -> str:
     )
 
 
-def sheets(assignment: Assignment, student: Student, questions: Mapping[str, Question], code: str) -> str:
+def sheets(assignment: Assignment, student: Student, questions: Mapping[str, Question]) -> str:
     """Return the sheets of a student as HTML, which a script cuts into pages.
 
     Raises GradingError where an exercise hands out more numbers than a sheet holds.
     """
     _check_lengths(questions)
-    ids = f"<code>{escaped(student.id)}</code> · {escaped(assignment.name)} · <code>{code}</code>"
+    ids = f"<code>{escaped(student.id)}</code> · {escaped(assignment.name)}"
     says = "\n\n".join(filter(None, [assignment.introduction, _HOW_TO_ANSWER, assignment.credit.says]))
     first = f"<h1>{inline(assignment.title)}</h1><p class=whose>{escaped(student.name)}</p>{html(says)}"
     parts = [f"<section>{first}</section>", *(_exercise(question) for question in questions.values())]
@@ -174,25 +171,19 @@ def _data(sheet):
     return f"<table class=data>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>" if rows else ""
 
 
-def key(
-    assignment: Assignment,
-    students: Sequence[Student],
-    questions: Mapping[str, Mapping[str, Question]],
-    codes: Mapping[str, str],
-) -> str:
+def key(assignment: Assignment, students: Sequence[Student], questions: Mapping[str, Mapping[str, Question]]) -> str:
     """Return, as HTML, the right answers of all students for each exercise, and a table to write their points into.
 
     Arguments:
         assignment: `Assignment`.
         students: in the order of the rows.
         questions: {student: {number of an exercise: question}}.
-        codes: {student: the code on the sheets}.
     """
 
     def table(heads, cells):
-        top = "".join(f"<th>{head}</th>" for head in ("Student", "Code", *heads))
+        top = "".join(f"<th>{head}</th>" for head in ("Student", *heads))
         rows = "".join(
-            f"<tr><td>{escaped(one.name)} <code>{escaped(one.id)}</code></td><td><code>{codes[one.id]}</code></td>"
+            f"<tr><td>{escaped(one.name)} <code>{escaped(one.id)}</code></td>"
             f"{''.join(f'<td>{cell}</td>' for cell in cells(one))}</tr>"
             for one in students
         )

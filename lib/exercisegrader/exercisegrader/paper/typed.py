@@ -9,30 +9,14 @@ from exercisebook.kinds.kind import ELSEWHERE
 from exercisebook.question import Question
 from exercisegrader import GradingError, tables
 from exercisegrader.assignment import Assignment
-from exercisegrader.imprint import sealed
-from exercisegrader.released import Numbers, Released
+from exercisegrader.released import Released
 from exercisegrader.student import Roll, Student
 from exercisegrader.submissions import Collection, Submission
 from exercisegrader.tables import Faults, Table
 from plainmath.validation import did_you_mean
 
 #: The columns of a table beside those of the answers.
-ID, NAME, CODE = "id", "name", "code"
-#: Letters and digits that nobody takes for others.
-_CLEAR = "ABCDEFGHJKLMNPQRTUVWXY346789"
-_LENGTH = 4
-
-
-def code(assignment: Assignment, student: str, numbers: Numbers) -> str:
-    """Return the check code on the sheets of a student, which belongs to these numbers and to nobody else's sheets.
-
-    Arguments:
-        assignment: `Assignment`.
-        student: id.
-        numbers: of the release, {exercise: {parameter: text}}.
-    """
-    digest = int(sealed(assignment.secret, ["paper", assignment.name, student, numbers]), 16)
-    return "".join(_CLEAR[digest // len(_CLEAR) ** place % len(_CLEAR)] for place in range(_LENGTH))
+ID, NAME = "id", "name"
 
 
 def columns(questions: Mapping[str, Question]) -> list[str]:
@@ -56,8 +40,8 @@ def template(path: Path, heads: Sequence[str], students: Iterable[Student]) -> s
         GradingError: for a file that cannot be read, or has other columns.
     """
     if not path.exists():
-        rows = [[one.id, one.name, "", *[""] * len(heads)] for one in students]
-        return tables.as_text([[ID, NAME, CODE, *heads], *rows], bom=True)
+        rows = [[one.id, one.name, *[""] * len(heads)] for one in students]
+        return tables.as_text([[ID, NAME, *heads], *rows], bom=True)
     table = _read(path, heads)
     there = {row[ID].casefold() for _, row in _rows(table)}
     new = [{ID: one.id, NAME: tables.guarded(one.name)} for one in students if one.id.casefold() not in there]
@@ -65,7 +49,7 @@ def template(path: Path, heads: Sequence[str], students: Iterable[Student]) -> s
 
 
 def collect(path: Path, students: Sequence[Student], assignment: Assignment, released: Released) -> Collection:
-    """Return what was typed as submissions; a row without code and answers is none.
+    """Return what was typed as submissions; a row without answers is none.
 
     Arguments:
         path: of the table.
@@ -91,12 +75,7 @@ def collect(path: Path, students: Sequence[Student], assignment: Assignment, rel
             continue
         if lines.setdefault(student, line) != line:
             faults.add(line, f"{student} has a row already, line {lines[student]}: expected one")
-        said, right = row.get(CODE, "").replace(" ", "").upper(), code(assignment, student, released.numbers(student))
-        if said and said != right:
-            faults.add(
-                line, f"the code is {said!r}, and the sheets of {student} have {right}: are these this student's?"
-            )
-        if said or given:
+        if given:
             found[student] = _by_exercise(given)
     faults.demand_none()
     without = [one.id for one in students if one.id in found and one.id not in released.holders]
@@ -130,7 +109,7 @@ def _read(path: Path, heads: Sequence[str]) -> Table:
             meant = did_you_mean(head, [one for one in best.header if one and one not in expected], otherwise="")
             raise GradingError(f"{path.name}, line 1: there {there} {head!r}{f': {meant}' if meant else ''}")
     for head in best.header:
-        if head and head not in (*expected, NAME, CODE):
+        if head and head not in (*expected, NAME):
             raise GradingError(f"{path.name}, line 1: nothing is asked as {head!r}: {did_you_mean(head, heads)}")
     return best
 
