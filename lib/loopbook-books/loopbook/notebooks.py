@@ -257,7 +257,7 @@ def has_sliders(source: str) -> bool:
 
 
 def folded(cells: Iterable[NotebookNode]) -> list[NotebookNode]:
-    """The cells whose code a reader need not see: imports, sliders, checks, drawn diagrams, and what serves these alone.
+    """The cells whose code a reader need not see: imports, sliders, checks, diagrams, and what serves these alone.
 
     A cell serves these alone if it shows nothing and all that it binds is used in folded cells only. What belongs to
     the argument is shown, and is not folded then.
