@@ -14,7 +14,7 @@ unexport MPLBACKEND
 # Each of the fifty kernels of the tests would compile the library again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help lab fresh edit test test-site test-grading test-solutions test-all test-alone bench book pdf pictures grade execute address version
+.PHONY: help lab fresh edit test test-site test-grading test-exercises test-all test-alone bench book pdf pictures grade execute address version
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -28,7 +28,7 @@ fresh: .venv/ready ## put a fresh notebook into your copy and keep yours beside 
 edit: .venv/ready ## open the stored notebooks themselves in JupyterLab, to change the collection
 	$(python) -m jupyterlab --config jupyter_lab_config.py
 
-test: .venv/ready ## prove the library, the ledger, every exercise and every cell of every chapter
+test: .venv/ready ## prove the library, the ledger and every cell of every chapter
 	$(python) -m pytest -n $(cores)
 
 test-site: .venv/ready ## prove the site: its pages, in a browser, with Python in them, and on paper
@@ -37,8 +37,8 @@ test-site: .venv/ready ## prove the site: its pages, in a browser, with Python i
 test-grading: .venv/ready ## prove the grader: jail, judge, reports, attacks, a term
 	$(python) -m pytest -n $(more) tests/exercisegrader tests/books_grading
 
-test-solutions: .venv/ready ## prove every cell of the solutions, also with the numbers of other students
-	$(python) -m pytest -n $(more) solutions tests/solutions
+test-exercises: .venv/ready ## prove every exercise, and every cell of the solutions, also with the numbers of other students
+	$(python) -m pytest -n $(more) solutions tests/exercises
 
 test-all: .venv/ready ## prove everything with all variants and all draws, as once a week
 	LOOPBOOK_ALL=1 $(python) -m pytest -n $(more) -o bookledger_mutation=true tests lib chapters solutions README.md

@@ -69,9 +69,9 @@ def pytest_collection_finish():
 
 
 #: What takes long begins first, so that no process works alone at the end; before all, what builds the site for others.
-FIRST = ("tests/site/test_browser_site.py", "tests/books/test_exercises.py", "chapters/16_",
+FIRST = ("tests/site/test_browser_site.py", "tests/exercises/test_exercises.py", "chapters/16_",
          "tests/control_engineering/test_ise.py", "lib/loopbook-books/loopbook/ledger/haugen.toml", "chapters/",
-         "tests/site/test_browser.py", "tests/solutions/test_exercise_solutions.py")  # fmt: skip
+         "tests/site/test_browser.py", "tests/exercises/test_exercise_solutions.py")  # fmt: skip
 #: What needs the site finds it built.
 LAST = ("lib/", "README.md", "tests/repository/test_style.py", "tests/site/test_book.py",
         "tests/site/test_cheat_sheet.py")  # fmt: skip

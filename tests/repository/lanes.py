@@ -20,8 +20,8 @@ LANES = {
         "tests/exercisegrader/*", "tests/books_grading/*", "examples/*", "docs/authors.md", "docs/instructors.md",
         "environment.txt",
     ],
-    "test-solutions": [
-        "solutions/*", "tests/solutions/*", "lib/exercisebook/*", "lib/loopbook-books/loopbook/exercises/*",
+    "test-exercises": [
+        "solutions/*", "tests/exercises/*", "lib/exercisebook/*", "lib/loopbook-books/loopbook/exercises/*",
         "environment.txt",
     ],
 }  # fmt: skip
@@ -31,7 +31,7 @@ def lanes(changed: list[str]) -> list[str]:
     """Return the lanes whose paths have changed.
 
     >>> lanes(["README.md", "solutions/10_tuning.ipynb"])
-    ['test-solutions']
+    ['test-exercises']
     """
     return [
         lane for lane, paths in LANES.items() if any(fnmatch.fnmatch(file, path) for file in changed for path in paths)
