@@ -154,7 +154,7 @@
     const [before, after] = [points[k], points[k + 1]];
     const outside = (Math.abs(before[1] - rest) - band) / Math.abs(after[1] - before[1]);
     const settled = before[0] + outside * (after[0] - before[0]) - from;
-    return [...says, `settles to ${100 * SETTLED} % after ${time.says(settled)}${unitOfTime}`].join(", ");
+    return [...says, `settles to ${100 * SETTLED} % after about ${time.says(settled)}${unitOfTime}`].join(", ");
   }
 
   const unitOf = (name) => name.match(/\[(.+)\]/)?.[1].replace(/^1$/, "").replace(/^./, "\u202f$&") ?? "";
