@@ -69,7 +69,7 @@ class TestWholeBook:
 
     def test_the_contents_have_the_numbers_of_the_sheets(self, pdf):
         texts = [sheet.extract_text() for sheet in pdf.pages]
-        lines = re.findall(r"^(Section .+?|Example .+?|Solutions(?: · .+?)?) ?(\d+)$", texts[1], re.MULTILINE)
+        lines = re.findall(r"^(.+ \((?:Section|Example) [\d.]+\)|Solutions(?: · .+?)?) ?(\d+)$", texts[1], re.MULTILINE)
         assert len(lines) >= 8
         for title, number in lines:
             assert title in texts[int(number) - 1], (title, number)
