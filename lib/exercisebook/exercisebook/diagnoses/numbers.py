@@ -174,7 +174,7 @@ def are_recognised(answers: np.ndarray, halves: np.ndarray, wrong: np.ndarray) -
     Arguments:
         answers: numbers.
         halves: of each, half a unit of its last digit.
-        wrong: values, NaN where there is none.
+        wrong: values, NaN where there is none; zero is taken for none.
 
     >>> answers = np.array([0.67, 0.66, 0.7, 1])
     >>> are_recognised(answers, half_units(answers), np.array([2 / 3, 2 / 3, 2 / 3, np.nan])).tolist()
